@@ -1,0 +1,13 @@
+//! The frames that meet; types without values.
+
+/// Where a scene places things.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum World {}
+
+/// The frame in which one body's mesh is static.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rest {}
+
+/// The camera's frame: its own motion, its own axes (x right, y up, z forward), its event as origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Observer {}

@@ -1,0 +1,385 @@
+use super::{ApparentMesh, ApparentTriangle, Arc, Field, Rod};
+use crate::relativity::{ApparentMap, Points, PointsMut};
+use crate::scene::Mesh;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// [`ApparentTriangle::piece`] of a triangle that was not cut.
+pub const WHOLE: u32 = u32::MAX;
+
+/// How finely a mesh is cut so that flat triangles show what curved surfaces look like.
+///
+/// Edges are cut where the closed form of their image asks for it ([`Arc`]), each by itself and from its two
+/// end points alone, so that two triangles cut a shared edge alike whatever their winding and whether or not
+/// they share vertices: no cracks. Interiors follow by halving the longest side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Subdivision {
+    /// Largest distance in pixels between a drawn edge and its exact image; usually ¼. Pieces grow as
+    /// 1/tolerance for faces and as its root for edges.
+    pub tolerance: f64,
+    /// The most triangles a body may be cut into; memory is about 120 bytes a triangle.
+    pub most: usize,
+}
+
+impl Default for Subdivision {
+    fn default() -> Self {
+        Self { tolerance: 0.25, most: 20_000_000 }
+    }
+}
+
+/// Points of a surface (textures, depth) may be off by this many times the tolerance of outlines.
+const WARP: f64 = 4.0;
+
+/// A tolerance that would need more triangles than allowed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("a tolerance of {tolerance} px cuts this mesh into more than {most} triangles; use a larger tolerance")]
+pub struct TooManyPieces {
+    /// What was asked, pixels.
+    pub tolerance: f64,
+    /// The limit.
+    pub most: usize,
+}
+
+/// Triangles a task works on at once.
+const CHUNK: usize = 2048;
+
+impl ApparentMesh {
+    /// The mesh as it is seen, without cutting anything: right only for triangles that look small.
+    pub fn linear(mesh: &Mesh, map: &ApparentMap) -> Self {
+        let (vertices, _) = see_vertices(mesh, map);
+        let triangles = (0..mesh.triangles.len())
+            .filter(|&face| !faces_away(mesh, map, face))
+            .map(|face| ApparentTriangle { corners: mesh.triangles[face], face: face as u32, piece: WHOLE })
+            .collect();
+        Self { vertices, triangles, pieces: Vec::new() }
+    }
+
+    /// The mesh as it is seen, cut so that it stays true to the pixel within `field`. Parts outside the
+    /// picture may be left out.
+    ///
+    /// # Errors
+    /// If that takes more triangles than allowed.
+    pub fn new(mesh: &Mesh, map: &ApparentMap, field: &Field, how: &Subdivision) -> Result<Self, TooManyPieces> {
+        let (mut vertices, doppler) = see_vertices(mesh, map);
+        if map.speed() == 0.0 {
+            return Ok(Self::linear(mesh, map));
+        }
+        let made = AtomicUsize::new(0);
+        let fault = TooManyPieces { tolerance: how.tolerance, most: how.most };
+        let own = vertices.len() as u32;
+        let chunks: Vec<Chunk> = (0..mesh.triangles.len().div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut cutter =
+                    Cutter { mesh, map, field, how, doppler: &doppler, made: &made, out: Chunk::default(), own, sides: Vec::new() };
+                let faces = chunk * CHUNK..((chunk + 1) * CHUNK).min(mesh.triangles.len());
+                faces.into_iter().try_for_each(|face| cutter.cut(face)).map(|()| cutter.out).ok_or(fault)
+            })
+            .collect::<Result<_, _>>()?;
+
+        let count = |of: fn(&Chunk) -> usize| chunks.iter().map(of).sum::<usize>();
+        let mut triangles = Vec::with_capacity(count(|c| c.triangles.len()));
+        let mut pieces = Vec::with_capacity(count(|c| c.pieces.len()));
+        vertices.reserve(count(|c| c.vertices.len()));
+        for chunk in chunks {
+            let (vertex_shift, piece_shift) = (vertices.len() as u32 - own, pieces.len() as u32);
+            triangles.extend(chunk.triangles.into_iter().map(|mut t| {
+                t.corners = t.corners.map(|v| if v < own { v } else { v + vertex_shift });
+                t.piece = if t.piece == WHOLE { WHOLE } else { t.piece + piece_shift };
+                t
+            }));
+            vertices.extend(chunk.vertices);
+            pieces.extend(chunk.pieces);
+        }
+        Ok(Self { vertices, triangles, pieces })
+    }
+}
+
+/// Apparent positions and Doppler factors of the mesh's own vertices.
+fn see_vertices(mesh: &Mesh, map: &ApparentMap) -> (Vec<DVec3>, Vec<f64>) {
+    const BLOCK: usize = 512;
+    let n = mesh.vertex_count();
+    let (mut vertices, mut doppler) = (vec![DVec3::ZERO; n], vec![0.0; n]);
+    vertices.par_chunks_mut(BLOCK).zip(doppler.par_chunks_mut(BLOCK)).enumerate().for_each(
+        |(block, (vertices, doppler))| {
+            let at = block * BLOCK..block * BLOCK + vertices.len();
+            let mut out = [[0.0; BLOCK]; 4];
+            let [x, y, z, distance] = &mut out;
+            map.see_all(
+                Points { x: &mesh.x[at.clone()], y: &mesh.y[at.clone()], z: &mesh.z[at] },
+                PointsMut { x, y, z, distance, doppler },
+            );
+            for (i, vertex) in vertices.iter_mut().enumerate() {
+                *vertex = DVec3::new(out[0][i], out[1][i], out[2][i]);
+            }
+        },
+    );
+    (vertices, doppler)
+}
+
+/// Facing, decided in the rest frame: (O′ − p′)·n′ > 0 is the front.
+fn faces_away(mesh: &Mesh, map: &ApparentMap, face: usize) -> bool {
+    if !mesh.is_one_sided(face) {
+        return false;
+    }
+    let [a, b, c] = mesh.corners(face).map(|v| map.offset_rest(v));
+    a.dot((b - a).cross(c - a)) >= 0.0
+}
+
+#[derive(Default)]
+struct Chunk {
+    vertices: Vec<DVec3>,
+    triangles: Vec<ApparentTriangle>,
+    pieces: Vec<[[f32; 2]; 3]>,
+}
+
+/// A corner of a piece while it is being cut.
+#[derive(Clone, Copy)]
+struct Corner {
+    /// Index among the apparent vertices.
+    index: u32,
+    /// Rest frame.
+    rest: DVec3,
+    /// Barycentric coordinates of the second and third corner of the mesh's triangle.
+    weights: [f64; 2],
+}
+
+/// The nodes of one side, kept in [`Cutter::sides`]; both its ends included.
+#[derive(Clone, Copy)]
+struct Side {
+    start: usize,
+    pieces: usize,
+    reversed: bool,
+    /// How much of the tolerance a piece uses up; what the pieces were before they were rounded up.
+    fill: f64,
+}
+
+impl Side {
+    fn node(self, k: usize) -> usize {
+        self.start + if self.reversed { self.pieces - k } else { k }
+    }
+
+    fn part(self, from: usize, to: usize) -> Self {
+        let start = self.node(from).min(self.node(to));
+        Self { start, pieces: to - from, ..self }
+    }
+
+    /// Length, measured in tolerances.
+    fn extent(self) -> f64 {
+        self.fill * self.pieces as f64
+    }
+
+    fn turned(self) -> Self {
+        Self { reversed: !self.reversed, ..self }
+    }
+}
+
+struct Cutter<'a> {
+    mesh: &'a Mesh,
+    map: &'a ApparentMap,
+    field: &'a Field,
+    how: &'a Subdivision,
+    doppler: &'a [f64],
+    made: &'a AtomicUsize,
+    out: Chunk,
+    /// How many vertices the mesh has of its own.
+    own: u32,
+    sides: Vec<Corner>,
+}
+
+impl Cutter<'_> {
+    /// Cuts one triangle of the mesh; none when there are too many pieces.
+    fn cut(&mut self, face: usize) -> Option<()> {
+        if faces_away(self.mesh, self.map, face) {
+            return Some(());
+        }
+        let indices = self.mesh.triangles[face];
+        let rest = self.mesh.corners(face);
+        let offsets = rest.map(|v| self.map.offset_rest(v));
+        if (0..3).all(|i| {
+            let j = (i + 1) % 3;
+            self.surely_whole(offsets[i], offsets[j], indices[i], indices[j])
+        }) {
+            self.out.triangles.push(ApparentTriangle { corners: indices, face: face as u32, piece: WHOLE });
+            return self.count(1);
+        }
+        if self.misses_picture(&offsets) {
+            return Some(());
+        }
+        let weights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        let corners = [0, 1, 2].map(|i| Corner { index: indices[i], rest: rest[i], weights: weights[i] });
+        self.sides.clear();
+        let sides = [0, 1, 2].map(|i| self.outer_side(corners[i], corners[(i + 1) % 3]));
+        self.split(face as u32, corners, sides, 0)
+    }
+
+    /// A bound that needs no trigonometry: the edge surely looks straight.
+    #[inline]
+    fn surely_whole(&self, a: DVec3, b: DVec3, ia: u32, ib: u32) -> bool {
+        let speed = self.map.speed();
+        let nearest = a.length_squared().min(b.length_squared()).sqrt();
+        let length = (b - a).length();
+        // Angle of the edge in the rest sky, from above.
+        let angle = 1.1 * length / nearest;
+        // D changes by at most a factor e^(γβ·angle) along it.
+        if !(angle < 0.25 && angle * speed < 0.25) {
+            return false;
+        }
+        let doppler = 0.75 * self.doppler[ia as usize].min(self.doppler[ib as usize]);
+        let apparent = angle / doppler;
+        // |N′·û| ≤ 1 and min(1, D) ≤ 1 make one bound for outline and surface.
+        speed * apparent * apparent * self.field.focal() * self.field.greatest_scale() <= 8.0 * self.how.tolerance
+    }
+
+    fn count(&self, pieces: usize) -> Option<()> {
+        let made = self.made.fetch_add(pieces, Ordering::Relaxed);
+        (made + pieces <= self.how.most).then_some(())
+    }
+
+    /// Whether nothing of a triangle (offsets from the observer, rest frame) can be in the picture: its
+    /// bounding cone in the rest sky is a cone in ours, aberration being conformal.
+    fn misses_picture(&self, offsets: &[DVec3; 3]) -> bool {
+        let units = offsets.map(|v| v.normalize_or_zero());
+        let sum = units[0] + units[1] + units[2];
+        let length = sum.length();
+        let axis = sum / length;
+        let cosine = units.iter().map(|u| u.dot(axis)).fold(1.0, f64::min) - 1e-12;
+        // Wider than a half-sky, a cap need not hold the triangle between its corners.
+        if !(length > 1e-6 && cosine > 0.0) {
+            return false;
+        }
+        // n′·axis ≥ cosine, boosted: M·n ≥ −N.
+        let (gamma, speed, motion) = (self.map.gamma(), self.map.speed(), self.map.axis_rest());
+        let along = axis.dot(motion);
+        let m = self.map.rotate(axis + ((gamma - 1.0) * along - speed * cosine) * motion);
+        let n = speed * along - gamma * cosine;
+        let length = m.length();
+        let cos_seen = (-n / length).clamp(-1.0, 1.0);
+        let sin_seen = ((1.0 - cosine * cosine).sqrt() / length).min(1.0);
+        self.field.misses_cone(m / length, cos_seen, sin_seen)
+    }
+
+    fn surface_tolerance(&self) -> f64 {
+        WARP * self.how.tolerance
+    }
+
+    /// A side of a triangle of the mesh: an outline, cut from its end points in an order of their own, so that
+    /// the neighbour cuts alike.
+    fn outer_side(&mut self, a: Corner, b: Corner) -> Side {
+        let key = |c: &Corner| c.rest.to_array();
+        let swapped = key(&a) > key(&b);
+        let (first, last) = if swapped { (b, a) } else { (a, b) };
+        let (from, to) = (self.map.offset_rest(first.rest), self.map.offset_rest(last.rest));
+        let side = match Arc::new(self.map, from, to) {
+            Some(arc) => {
+                let cuts = arc.surface_cuts(self.field, self.how.tolerance, self.surface_tolerance());
+                self.side(first, last, arc.parameters(&cuts), cuts.total)
+            }
+            None => self.radial_side(first, last),
+        };
+        if swapped { side.turned() } else { side }
+    }
+
+    fn inner_side(&mut self, a: Corner, b: Corner) -> Side {
+        match Arc::new(self.map, self.map.offset_rest(a.rest), self.map.offset_rest(b.rest)) {
+            Some(arc) => {
+                let cuts = arc.inner_cuts(self.field, self.surface_tolerance());
+                self.side(a, b, arc.parameters(&cuts), cuts.total)
+            }
+            None => self.radial_side(a, b),
+        }
+    }
+
+    /// A side seen end-on.
+    fn radial_side(&mut self, a: Corner, b: Corner) -> Side {
+        let cut = Rod { from: a.rest, to: b.rest }.through_observer(self.map);
+        self.side(a, b, cut.into_iter(), 1.0)
+    }
+
+    fn side(&mut self, first: Corner, last: Corner, cuts: impl Iterator<Item = f64>, total: f64) -> Side {
+        let start = self.sides.len();
+        self.sides.push(first);
+        for t in cuts {
+            let weights = [0, 1].map(|i| first.weights[i] + t * (last.weights[i] - first.weights[i]));
+            let corner = self.vertex(first.rest + t * (last.rest - first.rest), weights);
+            self.sides.push(corner);
+        }
+        self.sides.push(last);
+        let pieces = self.sides.len() - start - 1;
+        Side { start, pieces, reversed: false, fill: total / pieces as f64 }
+    }
+
+    fn vertex(&mut self, rest: DVec3, weights: [f64; 2]) -> Corner {
+        let index = self.own + self.out.vertices.len() as u32;
+        self.out.vertices.push(self.map.see(rest).position);
+        Corner { index, rest, weights }
+    }
+
+    /// Halves the longest side still to be cut, joins the cut to the opposite corner, and goes on with the two
+    /// halves.
+    fn split(&mut self, face: u32, corners: [Corner; 3], sides: [Side; 3], depth: u32) -> Option<()> {
+        let most = (0..3)
+            .filter(|&i| sides[i].pieces > 1)
+            .max_by(|&i, &j| sides[i].extent().total_cmp(&sides[j].extent()));
+        let Some(most) = most else { return self.leaf(face, corners, depth) };
+        let pieces = sides[most].pieces;
+        if pieces > 2 && depth % 2 == 1 && self.misses_picture(&corners.map(|c| self.map.offset_rest(c.rest))) {
+            return Some(());
+        }
+
+        let half = pieces / 2;
+        let [a, b, c] = [corners[most], corners[(most + 1) % 3], corners[(most + 2) % 3]];
+        let [ab, bc, ca] = [sides[most], sides[(most + 1) % 3], sides[(most + 2) % 3]];
+        let middle = self.sides[ab.node(half)];
+        let kept = self.sides.len();
+        let across = self.inner_side(middle, c);
+        self.split(face, [a, middle, c], [ab.part(0, half), across, ca], depth + 1)?;
+        self.split(face, [middle, b, c], [ab.part(half, pieces), bc, across.turned()], depth + 1)?;
+        self.sides.truncate(kept);
+        Some(())
+    }
+
+    /// A triangle whose three sides look straight, unless it bulges between them: then it gets a corner in its
+    /// middle.
+    fn leaf(&mut self, face: u32, corners: [Corner; 3], depth: u32) -> Option<()> {
+        const DEEPEST: u32 = 60;
+        if depth < DEEPEST && self.bulges(&corners) {
+            let [a, b, c] = corners;
+            let weights = [0, 1].map(|i| (a.weights[i] + b.weights[i] + c.weights[i]) / 3.0);
+            let middle = self.vertex((a.rest + b.rest + c.rest) / 3.0, weights);
+            let kept = self.sides.len();
+            let spokes = corners.map(|corner| self.inner_side(middle, corner));
+            for i in 0..3 {
+                let j = (i + 1) % 3;
+                let rim = self.side(corners[i], corners[j], std::iter::empty(), 1.0);
+                self.split(face, [middle, corners[i], corners[j]], [spokes[i], rim, spokes[j].turned()], depth + 6)?;
+            }
+            self.sides.truncate(kept);
+            return Some(());
+        }
+        let piece = self.out.pieces.len() as u32;
+        self.out.pieces.push(corners.map(|c| c.weights.map(|w| w as f32)));
+        self.out.triangles.push(ApparentTriangle { corners: corners.map(|c| c.index), face, piece });
+        self.count(1)
+    }
+
+    /// Whether the middle of a flat apparent triangle is off by more than a surface may be: the error is along
+    /// the motion and exactly γβ(mean of the corners' r′ − r′ of the middle).
+    fn bulges(&self, corners: &[Corner; 3]) -> bool {
+        let [a, b, c] = corners.map(|c| self.map.offset_rest(c.rest));
+        let middle = (a + b + c) / 3.0;
+        let at_middle = middle.length();
+        let excess = (a.length() + b.length() + c.length()) / 3.0 - at_middle;
+        if at_middle == 0.0 {
+            return excess > 0.0;
+        }
+        let rest = corners[0].rest + corners[1].rest + corners[2].rest;
+        let sight = self.map.see(rest / 3.0);
+        let n = sight.position / sight.distance;
+        let off = self.map.speed() * excess / (sight.doppler.max(1.0) * sight.distance);
+        // A triangle's middle is off by 4/3 of what its sides are.
+        let allowed = self.field.tolerance_at(n, 4.0 / 3.0 * self.surface_tolerance());
+        off * self.field.focal() * self.field.scale(n) > allowed
+    }
+}

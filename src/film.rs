@@ -1,0 +1,44 @@
+//! What every method fills and every output reads.
+
+/// Linear light and geometry, pixel by pixel, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Linear sRGB radiance, averaged over the samples of the pixel.
+    pub color: Vec<[f32; 3]>,
+    /// Apparent distance r at the pixel's centre; infinite where nothing is seen.
+    pub distance: Vec<f32>,
+    /// Doppler factor at the pixel's centre; 0 where nothing is seen.
+    pub doppler: Vec<f32>,
+    /// Index of the body in the scene; [`NOTHING`] where nothing is seen.
+    pub body: Vec<i32>,
+    /// Index of the triangle in the body's file; [`NOTHING`] where nothing is seen.
+    pub face: Vec<i32>,
+}
+
+/// Body and face of a pixel where nothing is seen.
+pub const NOTHING: i32 = -1;
+
+impl Film {
+    /// A film on which nothing is seen.
+    pub fn new(width: u32, height: u32) -> Self {
+        let pixels = width as usize * height as usize;
+        Self {
+            width,
+            height,
+            color: vec![[0.0; 3]; pixels],
+            distance: vec![f32::INFINITY; pixels],
+            doppler: vec![0.0; pixels],
+            body: vec![NOTHING; pixels],
+            face: vec![NOTHING; pixels],
+        }
+    }
+
+    /// How many pixels see something.
+    pub fn covered(&self) -> usize {
+        self.body.iter().filter(|&&b| b != NOTHING).count()
+    }
+}

@@ -1,0 +1,54 @@
+use glam::DVec3;
+use terrell_geodesic::{Celerity, Event, Lorentz, Real, Rest, Tetrad, Wide, World};
+
+/// How a body moves: uniformly, its rest-frame origin passing through one event of the world.
+///
+/// X_world = L(celerity) · X_rest + origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// The velocity in the world, as celerity u = γβ.
+    pub celerity: Celerity,
+    /// The event of the rest frame's origin (at rest-frame time 0).
+    pub origin: Event<World>,
+}
+
+/// A body that does not move relative to the camera is never seen to pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NeverAbreast;
+
+impl Motion {
+    /// At rest at a position, at all times.
+    pub fn at_rest(position: DVec3) -> Self {
+        Self { celerity: Celerity::at_rest(), origin: Event::at(0.0, position) }
+    }
+
+    /// The map from rest-frame to world components.
+    pub fn world_from_rest<S: Real>(&self) -> Lorentz<World, Rest, S> {
+        Lorentz::boost(&self.celerity)
+    }
+
+    /// The observer `observer` becomes when it sees the rest-frame point `x_rest` abreast: at right angles to
+    /// the relative motion in its own frame, which is where the point appears nearest.
+    ///
+    /// In the rest frame that is cos θ′ = β, hence a proper time of Q − P/|u| from the given event, with P
+    /// the point's offset along the relative motion and Q across it.
+    ///
+    /// # Errors
+    /// If nothing moves.
+    pub fn seen_abreast(&self, x_rest: DVec3, observer: &Tetrad) -> Result<Tetrad, NeverAbreast> {
+        let whole = observer.observer_from_world::<Wide>() * self.world_from_rest::<Wide>();
+        let u = whole.celerity_in_from();
+        let speed = (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt();
+        if speed.high == 0.0 {
+            return Err(NeverAbreast);
+        }
+        let observer_rest =
+            self.world_from_rest::<Wide>().inverse() * observer.event().since::<Wide>(self.origin);
+        let offset: [Wide; 3] = [0, 1, 2].map(|i| Wide::from(x_rest[i]) - observer_rest.space[i]);
+        let axis = u.map(|c| c / speed);
+        let along = offset[0] * axis[0] + offset[1] * axis[1] + offset[2] * axis[2];
+        let across = [0, 1, 2].map(|i| offset[i] - along * axis[i]);
+        let across = (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]).sqrt();
+        Ok(observer.later((across - along / speed).value()))
+    }
+}
