@@ -1,6 +1,55 @@
-//! wip
-pub mod relativity;
-pub mod scene;
+//! See relativistic motion: any mesh as it *looks* at any speed.
+//!
+//! The light that arrives at one moment left a moving body at different times, so the body looks sheared,
+//! stretched and turned. This crate moves each vertex to where it is seen, cuts straight edges so that they
+//! become the hyperbolas they look like, to a stated pixel error, and draws the result.
+//!
+//! ```
+//! use terrell::{render, scene};
+//!
+//! let mut scene = scene::builtin_scenes()[0].scene(); // the cube of Fig. 2, at 0.9c
+//! scene.view.size = [320, 240];
+//! let camera = scene.camera()?;
+//! let (film, _) = render::render(&scene, &camera, &render::Options::default(), |_| ())?;
+//! let mut png = Vec::new();
+//! terrell::picture::write_png(&film, &mut png)?;
+//! assert!(png.starts_with(b"\x89PNG"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Equations
+//!
+//! "The paper" is Nollert, Kraus and Ruder, *Visualization in Curved Spacetimes: I* (2000).
+//!
+//! | | where | what |
+//! |---|---|---|
+//! | Eq. 1 | [`relativity::ApparentMap`] | apparent position, x = γ(x′ − βr′), and its inverse |
+//! | Eq. 2 | [`apparent::Rod`], [`apparent::Arc`] | straight rods are seen as hyperbolas |
+//! | Eq. 3, 4 | [`relativity::Sight::doppler`], [`relativity::ApparentMap::doppler_towards`] | Doppler factor |
+//! | Fig. 7 | [`geodesic::Spacetime`] | what hands straight segments to whoever looks |
+//!
+//! # Conventions
+//!
+//! * c = 1. Velocities are stored as celerity u = γβ ([`geodesic::Celerity`]).
+//! * *World*: where a scene places things. *Rest*: one a body, in which its mesh is static. *Observer*: the
+//!   camera's, its event as origin, x right, y up, z forward. Names say which: `x_rest`, `axis_observer`.
+//! * X_world = L(celerity) · X_rest + origin for a body; see [`relativity::Motion`].
+//! * D = ν_observed/ν_emitted: above 1 approaching and blue. θ always says its frame.
+//! * Spacetime arithmetic is f64, with 32 digits for what is formed once a body; the film is f32.
+//! * Colours are linear sRGB (Rec. 709 primaries, D65 white).
+//!
+//! # Reading order
+//!
+//! [`geodesic`] (events, Lorentz maps, observers) → [`relativity`] (the map) → [`scene`] (what is there) →
+//! [`apparent`] (what it looks like) → [`raster`] → [`film`] → [`picture`]; [`mod@render`] runs them in turn.
+
 pub mod apparent;
+pub mod color;
 pub mod film;
+pub mod picture;
+pub mod raster;
+pub mod relativity;
+pub mod render;
+pub mod scene;
+
 pub use terrell_geodesic as geodesic;

@@ -34,7 +34,7 @@ pub enum Paint {
 
 impl Default for Paint {
     fn default() -> Self {
-        Self::Uniform([0.8; 3])
+        Self::Uniform(Self::CLAY)
     }
 }
 
@@ -149,6 +149,19 @@ impl Mesh {
         self
     }
 
+    /// Paints a mesh that brings no colours so that its shape can be read: every face luminous in grey by the
+    /// direction it looks in the rest frame. It is paint, not light: it moves with the body.
+    pub fn paint_as_clay(&mut self) {
+        const LIT_FROM: DVec3 = DVec3::new(0.41, 0.74, 0.53);
+        let color = |t: usize| {
+            let [a, b, c] = self.corners(t);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let shade = (0.5 + 0.5 * normal.dot(LIT_FROM)) as f32;
+            Paint::CLAY.map(|v| v * (0.08 + 0.92 * shade * shade))
+        };
+        self.paint = Paint::Faces((0..self.triangles.len()).map(color).collect());
+    }
+
     /// Joins another mesh behind this one, its triangles numbered on.
     pub fn append(&mut self, other: Self) {
         let (vertices, triangles) = (self.vertex_count(), self.triangles.len());
@@ -238,6 +251,15 @@ fn fill_up<T: Copy>(own: &mut Vec<T>, own_count: usize, other: &[T], other_count
 }
 
 impl Paint {
+    /// What has no colour of its own.
+    pub const CLAY: [f32; 3] = [0.8; 3];
+
+    /// Whether the colour is the same all over a triangle.
+    #[inline]
+    pub fn is_of_faces(&self) -> bool {
+        !matches!(self, Self::Vertices(_))
+    }
+
     /// The colour at a point of a triangle, given its barycentric coordinates.
     #[inline]
     pub fn at(&self, face: usize, corners: [u32; 3], weights: [f64; 3]) -> [f32; 3] {
@@ -310,7 +332,7 @@ mod tests {
         both.append(red.clone());
         both.append(triangle());
         assert_eq!(both.triangles, [[0, 1, 2], [3, 4, 5]]);
-        assert_eq!(both.paint, Paint::Faces(vec![[1.0, 0.0, 0.0], [0.8; 3]]));
+        assert_eq!(both.paint, Paint::Faces(vec![[1.0, 0.0, 0.0], Paint::CLAY]));
         let mut vertices = triangle();
         vertices.paint = Paint::Vertices(vec![[0.1; 3]; 3]);
         both.append(vertices);

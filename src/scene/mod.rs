@@ -1,7 +1,80 @@
-//! What is there: meshes, bodies and the camera.
+//! What is there: meshes, bodies in motion, the camera; and the files they come from.
 
+mod body;
+mod builtin;
 mod camera;
+mod file;
+mod framing;
+mod import;
 mod mesh;
+pub mod shapes;
+mod view;
 
+pub use body::Body;
+pub use builtin::{Builtin, builtin_mesh, builtin_meshes, builtin_scenes};
 pub use camera::{Camera, Lens, LensError, MAX_SIDE, Projection};
+pub use file::{SceneError, parse_scene};
+pub use framing::framed;
+pub use import::{ImportError, Imported, import, import_obj, is_mesh_file};
 pub use mesh::{Mesh, MeshError, Paint};
+pub use view::{Aim, View, ViewError};
+
+use terrell_geodesic::{Celerity, CelerityError};
+
+/// Bodies and the one who looks at them.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// What the scene is called.
+    pub name: String,
+    /// In the scene's order.
+    pub bodies: Vec<Body>,
+    /// The camera, before a moment is chosen.
+    pub view: View,
+    /// What was passed over when reading, for people to read.
+    pub notes: Vec<String>,
+}
+
+/// A velocity asked for over a scene's own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Speed {
+    /// Speed and direction.
+    Velocity(Celerity),
+    /// |γβ|; whatever moves keeps its direction (or turns round, if negative), what rests goes along +x.
+    Along(f64),
+}
+
+impl Scene {
+    /// The camera at the moment the view asks for.
+    ///
+    /// # Errors
+    /// If the view cannot be had; see [`ViewError`].
+    pub fn camera(&self) -> Result<Camera, ViewError> {
+        self.view.camera(&self.bodies)
+    }
+
+    /// Sets the speed of whatever moves: the bodies in motion; if none is, the camera in motion; if nothing
+    /// moves at all, the first body.
+    ///
+    /// # Errors
+    /// If the speed is none.
+    pub fn set_speed(&mut self, speed: Speed) -> Result<(), CelerityError> {
+        let moves = |c: &Celerity| c.direction().is_some();
+        let any_body = self.bodies.iter().any(|b| moves(&b.motion.celerity));
+        let mut motions: Vec<&mut Celerity> = if any_body {
+            self.bodies.iter_mut().map(|b| &mut b.motion.celerity).filter(|c| moves(c)).collect()
+        } else if moves(&self.view.celerity) {
+            vec![&mut self.view.celerity]
+        } else {
+            self.bodies.iter_mut().take(1).map(|b| &mut b.motion.celerity).collect()
+        };
+        for celerity in &mut motions {
+            **celerity = match speed {
+                Speed::Velocity(velocity) => velocity,
+                Speed::Along(magnitude) => {
+                    Celerity::new(celerity.direction().unwrap_or(glam::DVec3::X) * magnitude)?
+                }
+            };
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,47 @@
+//! Writes the meshes that ship to `assets/`: `cargo run --example make_assets`.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+use terrell::scene::{Mesh, shapes};
+
+fn main() -> std::io::Result<()> {
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    for (name, mesh) in [("cube", shapes::cube()), ("gate", shapes::gate()), ("lattice", shapes::lattice())] {
+        let (obj, mtl) = obj(name, &mesh);
+        std::fs::write(assets.join(format!("{name}.obj")), obj)?;
+        std::fs::write(assets.join(format!("{name}.mtl")), mtl)?;
+        println!("{name}: {} vertices, {} triangles", mesh.vertex_count(), mesh.triangles.len());
+    }
+    Ok(())
+}
+
+/// OBJ and MTL, a material a colour; triangles keep their order.
+fn obj(name: &str, mesh: &Mesh) -> (String, String) {
+    let mut obj = format!("# made by examples/make_assets.rs; CC0\nmtllib {name}.mtl\n");
+    let mut mtl = String::from("# Kd: linear sRGB\n");
+    for v in 0..mesh.vertex_count() {
+        let p = mesh.vertex(v as u32);
+        let round = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
+        writeln!(obj, "v {} {} {}", round(p.x), round(p.y), round(p.z)).unwrap();
+    }
+    let mut materials = BTreeMap::new();
+    let mut last = usize::MAX;
+    for (t, corners) in mesh.triangles.iter().enumerate() {
+        let color = mesh.paint.at(t, *corners, [1.0, 0.0, 0.0]);
+        let key = color.map(|c| (c * 1e4).round() as u32);
+        let next = materials.len();
+        let material = *materials.entry(key).or_insert_with(|| {
+            let [r, g, b] = key.map(|c| f64::from(c) / 1e4);
+            writeln!(mtl, "newmtl c{next}\nKd {r} {g} {b}").unwrap();
+            next
+        });
+        if material != last {
+            writeln!(obj, "usemtl c{material}").unwrap();
+            last = material;
+        }
+        let [a, b, c] = corners.map(|v| v + 1);
+        writeln!(obj, "f {a} {b} {c}").unwrap();
+    }
+    (obj, mtl)
+}

@@ -1,0 +1,65 @@
+//! parse → run → report; a file a subcommand.
+
+mod locate;
+mod render;
+mod scenes;
+mod source;
+mod values;
+mod velocity;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// See relativistic motion: any mesh as it looks at any speed.
+#[derive(Parser)]
+#[command(name = "terrell", version, max_term_width = 100, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "Examples:
+  terrell render cube                              the cube of Fig. 2, to cube.png
+  terrell render statue.glb --beta 0.9             your own mesh, passing by at 0.9c
+  terrell render gate --color doppler -o gate.exr  float channels, Doppler factor included
+  terrell locate --beta 0.9,0,0 1,2,3              where one point is seen";
+
+#[derive(Subcommand)]
+enum Command {
+    Render(render::Render),
+    Locate(locate::Locate),
+    Scenes(scenes::Scenes),
+}
+
+/// What went wrong, told to people.
+pub(crate) type Fault = Box<dyn std::error::Error>;
+
+/// The user's mistakes.
+const MISTAKE: u8 = 2;
+/// Everything else: a closed pipe, a full disk under standard output.
+const FAILURE: u8 = 1;
+
+pub(crate) fn run() -> ExitCode {
+    let cli = match Cli::try_parse_from(std::env::args_os().map(values::shield_negative)) {
+        Ok(cli) => cli,
+        Err(e) => {
+            // Help and version are no mistakes; a closed pipe under them is nobody's.
+            let code = if e.use_stderr() { MISTAKE } else { 0 };
+            let _ = e.print();
+            return ExitCode::from(code);
+        }
+    };
+    let done = match cli.command {
+        Command::Render(render) => render.run(),
+        Command::Locate(locate) => locate.run(),
+        Command::Scenes(scenes) => scenes.run(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) => {
+            let closed = fault.downcast_ref::<std::io::Error>();
+            eprintln!("error: {fault}");
+            ExitCode::from(if closed.is_some() { FAILURE } else { MISTAKE })
+        }
+    }
+}

@@ -1,0 +1,320 @@
+use super::Fault;
+use super::source;
+use super::values::{number, size, when};
+use super::velocity::VelocityFlags;
+use clap::{Args, ValueEnum};
+use serde_json::json;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use terrell::color::Coloring;
+use terrell::film::Film;
+use terrell::picture::{self, Format};
+use terrell::raster::Samples;
+use terrell::relativity::ApparentMap;
+use terrell::render::{Options, Report, Step, render};
+use terrell::scene::{Camera, Projection, Scene};
+
+/// One picture of a scene
+///
+/// SCENE is the name of a scene that ships (see `terrell scenes`), a TOML file, or a mesh (.obj, .gltf, .glb),
+/// which is framed so that it is seen whole as it passes, abreast.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  terrell render cube
+  terrell render cube --beta 0 -o rest.png
+  terrell render statue.glb --beta 0.99 --size 1920x1080 --samples 9
+  terrell render gate --camera panorama --size 2000x1000 --color doppler
+  terrell render street.toml --when \"nearest tram\" -o street.exr --json street.json")]
+pub struct Render {
+    /// Scene: a name, a .toml file or a mesh
+    scene: String,
+    /// Picture to write, .png or .exr [default: the scene's name.png]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    velocity: VelocityFlags,
+    /// World time of the picture; a moving camera goes along its world line
+    #[arg(long, value_name = "T", value_parser = number, conflicts_with = "when")]
+    time: Option<f64>,
+    /// Take the picture when a body appears abreast: "nearest BODY"
+    #[arg(long, value_name = "\"nearest BODY\"", value_parser = when)]
+    when: Option<String>,
+    /// Pixels
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    /// Field of view in degrees: vertical (pinhole, fisheye)
+    #[arg(long, value_name = "DEG", value_parser = number)]
+    fov: Option<f64>,
+    /// Projection
+    #[arg(long, value_enum)]
+    camera: Option<CameraFlag>,
+    /// Largest distance between a drawn edge and its exact image; cost grows as 1/√ for edges, 1/ for faces
+    #[arg(long, value_name = "PX", value_parser = number, default_value = "0.25")]
+    tolerance: f64,
+    /// Samples a pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Samples::MOST)), default_value = "1")]
+    samples: u32,
+    /// What a pixel shows
+    #[arg(long, value_enum, default_value = "geometry")]
+    color: ColorFlag,
+    /// Write what was done, with times and counts, as JSON; - for standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Say nothing unless something is wrong
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum CameraFlag {
+    /// Straight lines stay straight
+    Pinhole,
+    /// Equidistant
+    Fisheye,
+    /// Equirectangular, the whole sky
+    Panorama,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ColorFlag {
+    /// The meshes' own colours, without shift and beaming
+    Geometry,
+    /// The Doppler factor in false colour: white 1, blue above, red below
+    Doppler,
+}
+
+impl Render {
+    pub fn run(self) -> Result<(), Fault> {
+        let start = Instant::now();
+        if !(self.tolerance > 0.0) {
+            return Err(format!("--tolerance {} is not above 0 px", self.tolerance).into());
+        }
+        let scene = self.scene()?;
+        let camera = scene.camera()?;
+        let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
+        Format::of(&output)?;
+        for path in [Some(&output), self.json.as_ref()].into_iter().flatten() {
+            check_folder(path)?;
+        }
+        let options = Options {
+            tolerance: self.tolerance,
+            samples: self.samples,
+            coloring: match self.color {
+                ColorFlag::Geometry => Coloring::Geometry,
+                ColorFlag::Doppler => Coloring::Doppler,
+            },
+            ..Options::default()
+        };
+        let read = start.elapsed();
+        let mut progress = Progress::new(self.quiet);
+        let (film, report) = render(&scene, &camera, &options, |step| progress.show(&scene, step))?;
+        progress.clear();
+        let before_writing = start.elapsed();
+        picture::write(&film, &output)?;
+        let times = json!({
+            "reading": read.as_secs_f64(),
+            "mapping_and_cutting": report.subdivision.as_secs_f64(),
+            "shading": report.shading.as_secs_f64(),
+            "writing": (start.elapsed() - before_writing).as_secs_f64(),
+            "whole": start.elapsed().as_secs_f64(),
+        });
+        let seconds = start.elapsed().as_secs_f64();
+        let json_to_stdout = self.json.as_deref() == Some(Path::new("-"));
+        if let Some(path) = &self.json {
+            let all = summary(&scene, &camera, &options, &film, &report, &output, times);
+            let text = format!("{all:#}\n");
+            if json_to_stdout {
+                std::io::stdout().write_all(text.as_bytes())?;
+            } else {
+                picture::write_whole(path, |to| to.write_all(text.as_bytes()))?;
+            }
+        }
+        if !self.quiet {
+            let line = one_line(&scene, &camera, &options, &film, &report, &output, seconds);
+            if json_to_stdout { eprint!("{line}") } else { std::io::stdout().write_all(line.as_bytes())? }
+        }
+        Ok(())
+    }
+
+    /// The scene, with what the flags say over what it says itself.
+    fn scene(&self) -> Result<Scene, Fault> {
+        let mut scene = source::open(&self.scene, self.velocity.speed()?)?;
+        let view = &mut scene.view;
+        if let Some(camera) = self.camera {
+            let projection = match camera {
+                CameraFlag::Pinhole => Projection::Pinhole,
+                CameraFlag::Fisheye => Projection::Fisheye,
+                CameraFlag::Panorama => Projection::Panorama,
+            };
+            if projection != view.projection {
+                (view.projection, view.fov_deg) = (projection, None);
+            }
+        }
+        view.fov_deg = self.fov.or(view.fov_deg);
+        view.size = self.size.unwrap_or(view.size);
+        if let Some(time) = self.time {
+            view.set_time(time)?;
+        }
+        if let Some(body) = &self.when {
+            view.nearest = Some(body.clone());
+        }
+        if view.nearest.is_some() && self.when.is_none() && is_still(&scene) {
+            // The scene's own moment has no meaning at rest; its time does.
+            scene.view.nearest = None;
+        }
+        Ok(scene)
+    }
+}
+
+/// Whether neither bodies nor camera move.
+fn is_still(scene: &Scene) -> bool {
+    let moves = |c: &terrell::geodesic::Celerity| c.direction().is_some();
+    !moves(&scene.view.celerity) && !scene.bodies.iter().any(|b| moves(&b.motion.celerity))
+}
+
+/// A folder that is missing is better known before the work than after.
+fn check_folder(path: &Path) -> Result<(), Fault> {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") && !folder.is_dir() => {
+            Err(format!("cannot write {}: there is no folder {}", path.display(), folder.display()).into())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What is going on, on a terminal only.
+struct Progress {
+    shown: bool,
+    terminal: bool,
+    start: Instant,
+}
+
+impl Progress {
+    fn new(quiet: bool) -> Self {
+        Self { shown: false, terminal: !quiet && std::io::stderr().is_terminal(), start: Instant::now() }
+    }
+
+    fn show(&mut self, scene: &Scene, step: Step) {
+        if !self.terminal {
+            return;
+        }
+        let what = match step {
+            Step::Cutting(body) => format!(
+                "moving '{}' to where it is seen ({} of {})",
+                scene.bodies[body].name,
+                body + 1,
+                scene.bodies.len()
+            ),
+            Step::Drawing => "drawing".to_owned(),
+        };
+        eprint!("\r\x1b[K{what} … {:.1} s", self.start.elapsed().as_secs_f64());
+        self.shown = true;
+    }
+
+    fn clear(&self) {
+        if self.shown {
+            eprint!("\r\x1b[K");
+        }
+    }
+}
+
+/// Relative γ of every body and the camera.
+fn gammas(scene: &Scene, camera: &Camera) -> Vec<f64> {
+    scene.bodies.iter().map(|b| ApparentMap::new(&b.motion, &camera.observer).gamma()).collect()
+}
+
+fn one_line(
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    film: &Film,
+    report: &Report,
+    output: &Path,
+    seconds: f64,
+) -> String {
+    let gammas = gammas(scene, camera);
+    let fastest = gammas.iter().copied().fold(1.0, f64::max);
+    let bodies = match gammas.len() {
+        1 => format!("1 body, γ {fastest:.4}"),
+        n => format!("{n} bodies, γ up to {fastest:.4}"),
+    };
+    let mut line = format!(
+        "{}: {}x{} {}, flat spacetime, {bodies}: apparent shading on the CPU, {} triangles cut into {} for {} px, {:.0} ms\n",
+        output.display(),
+        film.width,
+        film.height,
+        camera.lens.projection(),
+        report.triangles,
+        report.pieces,
+        options.tolerance,
+        1e3 * seconds
+    );
+    if film.covered() == 0 {
+        line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
+    }
+    for note in &scene.notes {
+        line.push_str(&format!("note: {note}\n"));
+    }
+    line
+}
+
+fn summary(
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    film: &Film,
+    report: &Report,
+    output: &Path,
+    times: serde_json::Value,
+) -> serde_json::Value {
+    let event = |e: terrell::geodesic::Event<terrell::geodesic::World>| {
+        let p = e.position();
+        json!([e.t(), p.x, p.y, p.z])
+    };
+    let axes = camera.observer.axes();
+    let bodies: Vec<_> = scene
+        .bodies
+        .iter()
+        .zip(gammas(scene, camera))
+        .map(|(body, gamma)| {
+            json!({
+                "name": body.name,
+                "triangles": body.mesh.triangles.len(),
+                "celerity": body.motion.celerity.vector().to_array(),
+                "origin": event(body.motion.origin),
+                "gamma_relative_to_camera": gamma,
+            })
+        })
+        .collect();
+    let doppler = film.doppler.iter().zip(&film.body).filter(|(_, b)| **b >= 0).map(|(d, _)| *d);
+    let doppler = doppler.fold(None, |range: Option<[f32; 2]>, d| Some(range.map_or([d, d], |[l, h]| [l.min(d), h.max(d)])));
+    json!({
+        "terrell": env!("CARGO_PKG_VERSION"),
+        "scene": scene.name,
+        "output": output,
+        "spacetime": "flat",
+        "method": "apparent",
+        "raster": "cpu",
+        "threads": rayon::current_num_threads(),
+        "color": match options.coloring { Coloring::Geometry => "geometry", Coloring::Doppler => "doppler" },
+        "tolerance_px": options.tolerance,
+        "samples": options.samples,
+        "camera": {
+            "projection": camera.lens.projection().to_string(),
+            "size": [film.width, film.height],
+            "event": event(camera.observer.event()),
+            "celerity": camera.observer.celerity().vector().to_array(),
+            "right": axes[0].to_array(),
+            "up": axes[1].to_array(),
+            "forward": axes[2].to_array(),
+        },
+        "bodies": bodies,
+        "triangles": report.triangles,
+        "pieces": report.pieces,
+        "pixels_covered": film.covered(),
+        "doppler_range": doppler,
+        "seconds": times,
+        "notes": scene.notes,
+    })
+}

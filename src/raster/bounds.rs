@@ -1,0 +1,138 @@
+use crate::scene::{Lens, Projection};
+use glam::{DVec2, DVec3};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Pixels, the ends excluded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Rect {
+    pub x: [u32; 2],
+    pub y: [u32; 2],
+}
+
+/// Finds the pixels a triangle can cover: never too few.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounder<'a> {
+    lens: &'a Lens,
+    /// Least and greatest offset of a sample in its pixel.
+    samples: [DVec2; 2],
+}
+
+/// For what single-precision screen positions of vertices may be off by, and more.
+const SLACK_PX: f64 = 0.01;
+
+impl<'a> Bounder<'a> {
+    pub fn new(lens: &'a Lens, samples: [[f64; 2]; 2]) -> Self {
+        Self { lens, samples: samples.map(DVec2::from_array) }
+    }
+
+    /// Screen position of a vertex, not a number where it has none.
+    pub fn project(&self, vertex: DVec3) -> [f32; 2] {
+        match self.lens.projection() {
+            Projection::Pinhole => {
+                self.lens.pixel(vertex).map_or([f32::NAN; 2], |p| [p.x as f32, p.y as f32])
+            }
+            // Bounded by cones, not by corners.
+            _ => [f32::NAN; 2],
+        }
+    }
+
+    /// The pixels whose samples may lie in the triangle; two rectangles where it lies across a panorama's seam.
+    #[inline]
+    pub fn bounds(&self, screen: [[f32; 2]; 3], corners: impl Fn() -> [DVec3; 3]) -> [Option<Rect>; 2] {
+        let [a, b, c] = screen;
+        if (a[0] + b[0] + c[0]).is_finite() && (a[1] + b[1] + c[1]).is_finite() {
+            let range = |i: usize| {
+                [f64::from(a[i].min(b[i]).min(c[i])), f64::from(a[i].max(b[i]).max(c[i]))]
+            };
+            return [self.rect(range(0), range(1)), None];
+        }
+        match self.lens.projection() {
+            Projection::Pinhole if corners().iter().all(|v| v.z <= 0.0) => [None; 2],
+            // Across the camera plane: anywhere; bands and rows reject what the planes exclude.
+            Projection::Pinhole => [self.everything(), None],
+            Projection::Fisheye => self.of_fisheye(corners()),
+            Projection::Panorama => self.of_panorama(corners()),
+        }
+    }
+
+    fn everything(&self) -> Option<Rect> {
+        Some(Rect { x: [0, self.lens.width()], y: [0, self.lens.height()] })
+    }
+
+    #[inline]
+    fn rect(&self, x: [f64; 2], y: [f64; 2]) -> Option<Rect> {
+        let [low, high] = self.samples;
+        let pixels = |range: [f64; 2], low: f64, high: f64, side: u32| {
+            let from = (range[0] - SLACK_PX - high).ceil().clamp(0.0, f64::from(side)) as u32;
+            let to = (range[1] + SLACK_PX - low + 1.0).floor().clamp(0.0, f64::from(side)) as u32;
+            (from < to).then_some([from, to])
+        };
+        Some(Rect {
+            x: pixels(x, low.x, high.x, self.lens.width())?,
+            y: pixels(y, low.y, high.y, self.lens.height())?,
+        })
+    }
+
+    fn of_fisheye(&self, corners: [DVec3; 3]) -> [Option<Rect>; 2] {
+        let Some((axis, half)) = cone(corners) else { return [self.everything(), None] };
+        let theta = axis.truncate().length().atan2(axis.z);
+        if theta + half >= PI {
+            return [self.everything(), None];
+        }
+        let focal = self.lens.focal();
+        let middle = 0.5 * DVec2::new(f64::from(self.lens.width()), f64::from(self.lens.height()));
+        let (near, far) = ((theta - half).max(0.0), theta + half);
+        // Azimuth, y down.
+        let azimuth = (-axis.y).atan2(axis.x);
+        let spread = if theta > half { (half.sin() / theta.sin()).min(1.0).asin() } else { PI };
+        let mut points = vec![];
+        for radius in [near, far] {
+            for angle in [azimuth - spread, azimuth + spread] {
+                points.push(radius * DVec2::from_angle(angle));
+            }
+        }
+        for quarter in 0..4 {
+            let angle = f64::from(quarter) * FRAC_PI_2;
+            let off = (angle - azimuth + PI).rem_euclid(TAU) - PI;
+            if off.abs() <= spread {
+                points.push(far * DVec2::from_angle(angle));
+            }
+        }
+        let points = points.into_iter().map(|p| middle + focal * p);
+        let (low, high) = points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        [self.rect([low.x, high.x], [low.y, high.y]), None]
+    }
+
+    fn of_panorama(&self, corners: [DVec3; 3]) -> [Option<Rect>; 2] {
+        let Some((axis, half)) = cone(corners) else { return [self.everything(), None] };
+        let (width, height) = (f64::from(self.lens.width()), f64::from(self.lens.height()));
+        let latitude = axis.y.clamp(-1.0, 1.0).asin();
+        let y = |latitude: f64| (0.5 - latitude / PI) * height;
+        let rows = [y(latitude + half), y(latitude - half)];
+        if latitude.abs() + half >= FRAC_PI_2 {
+            return [self.rect([0.0, width], rows), None];
+        }
+        let spread = (half.sin() / latitude.cos()).min(1.0).asin() / TAU * width;
+        let middle = (0.5 + axis.x.atan2(axis.z) / TAU) * width;
+        let [from, to] = [middle - spread, middle + spread];
+        if from < SLACK_PX || to > width - SLACK_PX {
+            // Around the seam: the two ends of the rows.
+            let (low, high) = if from < SLACK_PX { (to, from + width) } else { (to - width, from) };
+            if high <= low {
+                return [self.rect([0.0, width], rows), None];
+            }
+            return [self.rect([0.0, low], rows), self.rect([high, width], rows)];
+        }
+        [self.rect([from, to], rows), None]
+    }
+}
+
+/// The cone of directions that holds a triangle: unit axis and half-angle, a little wide. None where it is not
+/// surely narrower than a half-sky.
+fn cone(corners: [DVec3; 3]) -> Option<(DVec3, f64)> {
+    let units = corners.map(DVec3::normalize_or_zero);
+    let axis = (units[0] + units[1] + units[2]).normalize_or_zero();
+    let sine_and_cosine = |u: &DVec3| (u.cross(axis).length(), u.dot(axis));
+    let half = units.iter().map(sine_and_cosine).map(|(s, c)| s.atan2(c)).fold(0.0, f64::max);
+    (axis != DVec3::ZERO && half < 0.45 * PI).then_some((axis, half + 1e-9))
+}

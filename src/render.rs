@@ -1,0 +1,92 @@
+//! A scene to a film: what every caller does.
+
+use crate::apparent::{ApparentMesh, Field, Subdivision, TooManyPieces};
+use crate::color::Coloring;
+use crate::film::Film;
+use crate::raster::{Drawable, Samples, shade};
+use crate::relativity::ApparentMap;
+use crate::scene::{Camera, Scene};
+use std::time::{Duration, Instant};
+
+/// How to draw.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Largest distance in pixels between a drawn edge and its exact image; usually ¼. Time and memory grow
+    /// as 1/tolerance for large faces.
+    pub tolerance: f64,
+    /// The most triangles a body may be cut into.
+    pub most_pieces: usize,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// What a pixel shows.
+    pub coloring: Coloring,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let Subdivision { tolerance, most } = Subdivision::default();
+        Self { tolerance, most_pieces: most, samples: 1, coloring: Coloring::Geometry }
+    }
+}
+
+/// What was done and what it took.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Triangles of the meshes.
+    pub triangles: usize,
+    /// Triangles drawn, after cutting.
+    pub pieces: usize,
+    /// Time for mapping and cutting.
+    pub subdivision: Duration,
+    /// Time for drawing.
+    pub shading: Duration,
+}
+
+/// A step of [`render`], for showing progress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The body of this index is moved to where it is seen, and cut.
+    Cutting(usize),
+    /// Everything is drawn.
+    Drawing,
+}
+
+/// Draws a scene by apparent shading: every body moved to where the camera sees it (Nollert et al. 2000,
+/// Eq. 1), cut until flat triangles show it to the pixel, and drawn by a z-buffer.
+///
+/// # Errors
+/// If a body would be cut into more pieces than allowed.
+pub fn render(
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    mut step: impl FnMut(Step),
+) -> Result<(Film, Report), TooManyPieces> {
+    let field = Field::new(&camera.lens);
+    let how = Subdivision { tolerance: options.tolerance, most: options.most_pieces };
+    let start = Instant::now();
+    let mut seen = Vec::with_capacity(scene.bodies.len());
+    for (index, body) in scene.bodies.iter().enumerate() {
+        step(Step::Cutting(index));
+        let map = ApparentMap::new(&body.motion, &camera.observer);
+        let mesh = ApparentMesh::new(&body.mesh, &map, &field, &how)?;
+        seen.push((map, mesh));
+    }
+    let cut = Instant::now();
+    step(Step::Drawing);
+    let drawables: Vec<_> = scene
+        .bodies
+        .iter()
+        .zip(&seen)
+        .enumerate()
+        .map(|(body, (source, (map, seen)))| Drawable { body, mesh: &source.mesh, map, seen })
+        .collect();
+    let film = shade(&drawables, &camera.lens, &Samples::new(options.samples), options.coloring);
+    let report = Report {
+        triangles: scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum(),
+        pieces: seen.iter().map(|(_, mesh)| mesh.triangles.len()).sum(),
+        subdivision: cut - start,
+        shading: cut.elapsed(),
+    };
+    Ok((film, report))
+}

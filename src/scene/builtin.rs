@@ -1,0 +1,81 @@
+use super::import::import_obj;
+use super::{Mesh, Scene, parse_scene};
+use std::path::Path;
+
+/// A scene that ships inside the program.
+#[derive(Clone, Copy, Debug)]
+pub struct Builtin {
+    /// What `terrell render` calls it.
+    pub name: &'static str,
+    /// What it shows, in one line.
+    pub about: &'static str,
+    /// The scene as TOML.
+    pub toml: &'static str,
+}
+
+impl Builtin {
+    /// The scene.
+    pub fn scene(&self) -> Scene {
+        parse_scene(self.toml, Path::new(self.name)).expect("scenes that ship are read by a test")
+    }
+}
+
+const SCENES: [Builtin; 3] = [
+    Builtin {
+        name: "cube",
+        about: "a cube passing at 0.9c, seen as it appears abreast: it seems to turn (Fig. 2)",
+        toml: include_str!("../../assets/cube.toml"),
+    },
+    Builtin {
+        name: "gate",
+        about: "inside a gate of two rows of six columns, flying through at 0.99c (Fig. 3)",
+        toml: include_str!("../../assets/gate.toml"),
+    },
+    Builtin {
+        name: "lattice",
+        about: "a lattice of spheres and rods passing overhead at 0.9c (Fig. 1)",
+        toml: include_str!("../../assets/lattice.toml"),
+    },
+];
+
+/// The scenes that ship.
+pub fn builtin_scenes() -> &'static [Builtin] {
+    &SCENES
+}
+
+/// Name, OBJ and MTL.
+const MESHES: [(&str, &str, &str); 3] = [
+    ("cube", include_str!("../../assets/cube.obj"), include_str!("../../assets/cube.mtl")),
+    ("gate", include_str!("../../assets/gate.obj"), include_str!("../../assets/gate.mtl")),
+    ("lattice", include_str!("../../assets/lattice.obj"), include_str!("../../assets/lattice.mtl")),
+];
+
+/// The names of the meshes that ship.
+pub fn builtin_meshes() -> impl Iterator<Item = &'static str> + Clone {
+    MESHES.iter().map(|(name, ..)| *name)
+}
+
+/// A mesh that ships, by name.
+pub fn builtin_mesh(name: &str) -> Option<Mesh> {
+    let (name, obj, mtl) = MESHES.iter().find(|(n, ..)| *n == name)?;
+    Some(import_obj(obj, mtl, name).expect("meshes that ship are read by a test").mesh)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_ships_can_be_read() {
+        for scene in builtin_scenes() {
+            let read = scene.scene();
+            assert_eq!(read.name, scene.name);
+            assert!(read.notes.is_empty(), "{:?}", read.notes);
+            read.camera().unwrap();
+        }
+        for name in builtin_meshes() {
+            builtin_mesh(name).unwrap().check().unwrap();
+        }
+        assert!(builtin_mesh("no such").is_none());
+    }
+}

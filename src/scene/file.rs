@@ -1,0 +1,486 @@
+//! Scenes as TOML.
+
+use super::import::{ImportError, import, is_mesh_file};
+use super::{Aim, Body, Mesh, Paint, Projection, Scene, View, builtin_mesh, builtin_meshes};
+use crate::relativity::Motion;
+use glam::{DAffine3, DQuat, DVec3};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use terrell_geodesic::{Celerity, CelerityError, Event};
+use toml::Spanned;
+
+/// Why a scene cannot be read: where, what, and what to try.
+#[derive(Debug)]
+pub struct SceneError {
+    path: PathBuf,
+    line: Option<usize>,
+    message: String,
+}
+
+impl std::fmt::Display for SceneError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        write!(f, ": {}", self.message)
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SceneFile {
+    camera: Option<CameraTable>,
+    #[serde(default)]
+    body: Vec<BodyTable>,
+    #[serde(default)]
+    material: BTreeMap<String, MaterialTable>,
+}
+
+type Vector = Spanned<[f64; 3]>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CameraTable {
+    time: Option<Spanned<f64>>,
+    position: Option<Vector>,
+    look_at: Option<Vector>,
+    forward: Option<Vector>,
+    up: Option<Vector>,
+    velocity: Option<Vector>,
+    celerity: Option<Vector>,
+    beta: Option<Spanned<f64>>,
+    gamma: Option<Spanned<f64>>,
+    rapidity: Option<Spanned<f64>>,
+    direction: Option<Vector>,
+    projection: Option<Spanned<String>>,
+    fov_deg: Option<f64>,
+    size: Option<[u32; 2]>,
+    nearest: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BodyTable {
+    name: Option<String>,
+    mesh: Spanned<String>,
+    time: Option<Spanned<f64>>,
+    position: Option<Vector>,
+    velocity: Option<Vector>,
+    celerity: Option<Vector>,
+    beta: Option<Spanned<f64>>,
+    gamma: Option<Spanned<f64>>,
+    rapidity: Option<Spanned<f64>>,
+    direction: Option<Vector>,
+    rotation: Option<RotationTable>,
+    scale: Option<Spanned<Scale>>,
+    material: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RotationTable {
+    axis: Vector,
+    angle_deg: Spanned<f64>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(untagged)]
+enum Scale {
+    Same(f64),
+    Each([f64; 3]),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaterialTable {
+    color: Spanned<Color>,
+}
+
+#[derive(Clone, Deserialize)]
+#[serde(untagged)]
+enum Color {
+    /// Linear sRGB.
+    Linear([f32; 3]),
+    /// #rrggbb, sRGB as in a browser.
+    Hex(String),
+}
+
+/// How fast and which way, in any of the ways a file may say it.
+struct VelocityKeys<'a> {
+    velocity: &'a Option<Vector>,
+    celerity: &'a Option<Vector>,
+    beta: &'a Option<Spanned<f64>>,
+    gamma: &'a Option<Spanned<f64>>,
+    rapidity: &'a Option<Spanned<f64>>,
+    direction: &'a Option<Vector>,
+}
+
+struct Source<'a> {
+    text: &'a str,
+    path: &'a Path,
+}
+
+impl Source<'_> {
+    fn fault(&self, at: Option<usize>, message: impl Into<String>) -> SceneError {
+        let line = at.map(|at| 1 + self.text.as_bytes()[..at.min(self.text.len())].iter().filter(|&&b| b == b'\n').count());
+        SceneError { path: self.path.to_owned(), line, message: message.into() }
+    }
+
+    fn at<T>(&self, place: &Spanned<T>, message: impl std::fmt::Display) -> SceneError {
+        self.fault(Some(place.span().start), message.to_string())
+    }
+
+    fn finite(&self, key: &str, value: &Spanned<f64>) -> Result<f64, SceneError> {
+        let v = *value.get_ref();
+        if v.is_finite() { Ok(v) } else { Err(self.at(value, format!("{key} = {v} is not finite"))) }
+    }
+
+    fn vector(&self, key: &str, value: &Vector) -> Result<DVec3, SceneError> {
+        let v = DVec3::from_array(*value.get_ref());
+        // What is larger has no digits left for a picture.
+        if v.is_finite() && v.abs().max_element() < 1e100 {
+            Ok(v)
+        } else {
+            Err(self.at(value, format!("{key} = [{}, {}, {}] is not finite or beyond 1e100", v.x, v.y, v.z)))
+        }
+    }
+
+    fn event(&self, time: &Option<Spanned<f64>>, position: &Option<Vector>) -> Result<Event<terrell_geodesic::World>, SceneError> {
+        let t = time.as_ref().map_or(Ok(0.0), |t| self.finite("time", t))?;
+        let x = position.as_ref().map_or(Ok(DVec3::ZERO), |p| self.vector("position", p))?;
+        Ok(Event::at(t, x))
+    }
+
+    fn celerity(&self, keys: &VelocityKeys<'_>) -> Result<Celerity, SceneError> {
+        let direction = match keys.direction {
+            Some(d) => self.vector("direction", d)?,
+            None => DVec3::X,
+        };
+        type Made<'a> = (&'static str, usize, Result<Celerity, CelerityError>);
+        let mut found: Vec<Made<'_>> = Vec::new();
+        if let Some(v) = keys.velocity {
+            found.push(("velocity", v.span().start, Celerity::from_beta(DVec3::from_array(*v.get_ref()))));
+        }
+        if let Some(v) = keys.celerity {
+            found.push(("celerity", v.span().start, Celerity::new(DVec3::from_array(*v.get_ref()))));
+        }
+        let vectors = found.len();
+        if let Some(v) = keys.beta {
+            let unit = direction.normalize_or_zero();
+            let made = if unit == DVec3::ZERO { Err(CelerityError::NoDirection) } else { Celerity::from_beta(unit * *v.get_ref()) };
+            found.push(("beta", v.span().start, made));
+        }
+        if let Some(v) = keys.gamma {
+            found.push(("gamma", v.span().start, Celerity::from_gamma(*v.get_ref(), direction)));
+        }
+        if let Some(v) = keys.rapidity {
+            found.push(("rapidity", v.span().start, Celerity::from_rapidity(*v.get_ref(), direction)));
+        }
+        match (found.as_slice(), keys.direction) {
+            ([], None) => Ok(Celerity::at_rest()),
+            ([], Some(d)) => Err(self.at(d, "a direction needs a speed: add beta, gamma or rapidity")),
+            ([(key, ..)], Some(d)) if vectors == 1 => {
+                Err(self.at(d, format!("{key} already has a direction; remove one of the two")))
+            }
+            ([(key, at, made)], _) => made.clone().map_err(|e| self.fault(Some(*at), format!("{key}: {e}"))),
+            ([(one, ..), (other, at, _), ..], _) => {
+                Err(self.fault(Some(*at), format!("both {one} and {other} are given; one is enough")))
+            }
+        }
+    }
+}
+
+/// The nearest of the names, if near enough to be what was meant.
+fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    names
+        .into_iter()
+        .map(|name| (strsim::damerau_levenshtein(word, name), name))
+        .min()
+        .filter(|(distance, name)| *distance <= 1 + name.len() / 3)
+        .map(|(_, name)| name)
+}
+
+fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> String {
+    match nearest(word, names.clone()) {
+        Some(name) => format!("did you mean '{name}'?"),
+        None => format!("known: {}", names.into_iter().collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// The parser's own message, with the nearest known key.
+fn explain(message: &str) -> String {
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    match quoted.split_first() {
+        Some((unknown, known)) if message.starts_with("unknown field") => {
+            format!("unknown key '{unknown}'; {}", did_you_mean(unknown, known.iter().copied()))
+        }
+        _ => message.lines().next().unwrap_or_default().to_owned(),
+    }
+}
+
+/// Reads a scene from TOML; `path` is where it stands, for messages and for the meshes it names.
+///
+/// # Errors
+/// With file, line, what is wrong and the nearest known name.
+pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
+    let source = Source { text, path };
+    let file: SceneFile =
+        toml::from_str(text).map_err(|e| source.fault(e.span().map(|s| s.start), explain(e.message())))?;
+    let mut notes = Vec::new();
+    let mut meshes: BTreeMap<String, Mesh> = BTreeMap::new();
+    let mut bodies: Vec<Body> = Vec::new();
+    for (index, table) in file.body.iter().enumerate() {
+        let body = read_body(&source, index, table, &file.material, &mut meshes, &mut notes)?;
+        if bodies.iter().any(|b| b.name == body.name) {
+            return Err(source.at(&table.mesh, format!("two bodies are called '{}'; give one another name", body.name)));
+        }
+        bodies.push(body);
+    }
+    if bodies.is_empty() {
+        return Err(source.fault(None, "the scene has no [[body]], so there is nothing to see"));
+    }
+    let view = match &file.camera {
+        Some(table) => read_camera(&source, table)?,
+        None => View::default(),
+    };
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Scene { name, bodies, view, notes })
+}
+
+fn read_camera(source: &Source<'_>, table: &CameraTable) -> Result<View, SceneError> {
+    let usual = View::default();
+    let projection = match &table.projection {
+        None => usual.projection,
+        Some(word) => parse_projection(word.get_ref()).map_err(|e| source.at(word, e))?,
+    };
+    let aim = match (&table.look_at, &table.forward) {
+        (Some(_), Some(forward)) => {
+            return Err(source.at(forward, "both look_at and forward are given; one is enough"));
+        }
+        (Some(point), None) => Aim::LookAt(source.vector("look_at", point)?),
+        (None, Some(forward)) => Aim::Forward(source.vector("forward", forward)?),
+        (None, None) => usual.aim,
+    };
+    let keys = VelocityKeys {
+        velocity: &table.velocity,
+        celerity: &table.celerity,
+        beta: &table.beta,
+        gamma: &table.gamma,
+        rapidity: &table.rapidity,
+        direction: &table.direction,
+    };
+    Ok(View {
+        event: source.event(&table.time, &table.position)?,
+        celerity: source.celerity(&keys)?,
+        aim,
+        up: table.up.as_ref().map_or(Ok(usual.up), |u| source.vector("up", u))?,
+        projection,
+        fov_deg: table.fov_deg,
+        size: table.size.unwrap_or(usual.size),
+        nearest: table.nearest.clone(),
+    })
+}
+
+/// The projection of that name.
+pub(crate) fn parse_projection(word: &str) -> Result<Projection, String> {
+    let all = [Projection::Pinhole, Projection::Fisheye, Projection::Panorama];
+    let names = all.map(|p| p.to_string());
+    names.iter().position(|n| n == word).map(|i| all[i]).ok_or_else(|| {
+        format!("unknown projection '{word}'; {}", did_you_mean(word, names.iter().map(String::as_str)))
+    })
+}
+
+fn read_body(
+    source: &Source<'_>,
+    index: usize,
+    table: &BodyTable,
+    materials: &BTreeMap<String, MaterialTable>,
+    meshes: &mut BTreeMap<String, Mesh>,
+    notes: &mut Vec<String>,
+) -> Result<Body, SceneError> {
+    let mesh_name = table.mesh.get_ref();
+    if !meshes.contains_key(mesh_name) {
+        let mesh = read_mesh(source, &table.mesh, notes)?;
+        meshes.insert(mesh_name.clone(), mesh);
+    }
+    let mut mesh = meshes[mesh_name].clone();
+    if let Some(word) = &table.material {
+        let name = word.get_ref();
+        let material = materials.get(name).ok_or_else(|| {
+            let known = materials.keys().map(String::as_str);
+            source.at(word, format!("there is no [material.{name}]; {}", did_you_mean(name, known)))
+        })?;
+        mesh.paint = Paint::Uniform(read_color(source, &material.color)?);
+    }
+    let scale = match &table.scale {
+        None => DVec3::ONE,
+        Some(place) => {
+            let scale = match *place.get_ref() {
+                Scale::Same(s) => DVec3::splat(s),
+                Scale::Each(s) => DVec3::from_array(s),
+            };
+            if !scale.is_finite() || scale.min_element().abs().min(scale.max_element().abs()) == 0.0 {
+                return Err(source.at(place, "scale must be finite and not zero"));
+            }
+            scale
+        }
+    };
+    let rotation = match &table.rotation {
+        None => DQuat::IDENTITY,
+        Some(rotation) => {
+            let axis = source.vector("rotation.axis", &rotation.axis)?.normalize_or_zero();
+            if axis == DVec3::ZERO {
+                return Err(source.at(&rotation.axis, "rotation.axis has length zero"));
+            }
+            DQuat::from_axis_angle(axis, source.finite("rotation.angle_deg", &rotation.angle_deg)?.to_radians())
+        }
+    };
+    if table.scale.is_some() || table.rotation.is_some() {
+        mesh = mesh.placed(&DAffine3::from_scale_rotation_translation(scale, rotation, DVec3::ZERO));
+        mesh.check().map_err(|e| source.at(&table.mesh, e))?;
+    }
+    let keys = VelocityKeys {
+        velocity: &table.velocity,
+        celerity: &table.celerity,
+        beta: &table.beta,
+        gamma: &table.gamma,
+        rapidity: &table.rapidity,
+        direction: &table.direction,
+    };
+    let motion = Motion { celerity: source.celerity(&keys)?, origin: source.event(&table.time, &table.position)? };
+    let stem = Path::new(mesh_name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let name = table.name.clone().unwrap_or(if index == 0 { stem } else { format!("{stem}{index}") });
+    Ok(Body { name, mesh: Arc::new(mesh), motion })
+}
+
+fn read_mesh(source: &Source<'_>, word: &Spanned<String>, notes: &mut Vec<String>) -> Result<Mesh, SceneError> {
+    let name = word.get_ref();
+    if let Some(mesh) = builtin_mesh(name) {
+        return Ok(mesh);
+    }
+    if !is_mesh_file(Path::new(name)) {
+        let message = format!(
+            "there is no mesh '{name}' built in ({}), and only .obj, .gltf and .glb files can be read",
+            did_you_mean(name, builtin_meshes())
+        );
+        return Err(source.at(word, message));
+    }
+    let file = source.path.parent().unwrap_or(Path::new("")).join(name);
+    let imported = import(&file).map_err(|e: ImportError| source.at(word, e))?;
+    notes.extend(imported.notes);
+    Ok(imported.mesh)
+}
+
+fn read_color(source: &Source<'_>, place: &Spanned<Color>) -> Result<[f32; 3], SceneError> {
+    match place.get_ref() {
+        Color::Linear(c) if c.iter().all(|v| v.is_finite() && *v >= 0.0) => Ok(*c),
+        Color::Linear(_) => Err(source.at(place, "color must be three numbers, none of them negative")),
+        Color::Hex(text) => {
+            let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii());
+            let value = digits.and_then(|d| u32::from_str_radix(d, 16).ok());
+            let value = value.ok_or_else(|| source.at(place, format!("color '{text}' is not of the form #rrggbb")))?;
+            Ok([16, 8, 0].map(|shift| crate::picture::linear((value >> shift & 0xff) as u8)))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        parse_scene(text, Path::new("s.toml")).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn every_key_is_read() {
+        let scene = parse_scene(
+            r##"
+            [camera]
+            time = 1
+            position = [0, -4, 1]
+            look_at = [0, 0, 0]
+            up = [0, 0, 1]
+            celerity = [0.1, 0, 0]
+            projection = "fisheye"
+            fov_deg = 120
+            size = [64, 48]
+            nearest = "ball"
+
+            [material.blue]
+            color = "#0000ff"
+            [material.dim]
+            color = [0.1, 0.2, 0.3]
+
+            [[body]]
+            name = "ball"
+            mesh = "cube"
+            time = -3
+            position = [0, 3, 0]
+            gamma = 2
+            direction = [0, 1, 0]
+            rotation = { axis = [0, 0, 1], angle_deg = 90 }
+            scale = [2, 1, 1]
+            material = "dim"
+
+            [[body]]
+            mesh = "cube"
+            velocity = [-0.6, 0, 0]
+            material = "blue"
+            "##,
+            Path::new("dir/s.toml"),
+        )
+        .unwrap();
+        assert_eq!(scene.name, "s");
+        let ball = &scene.bodies[0];
+        assert_eq!(ball.motion.origin, Event::new(-3.0, 0.0, 3.0, 0.0));
+        assert!((ball.motion.celerity.vector() - DVec3::Y * 3f64.sqrt()).length() < 1e-15);
+        let (low, high) = ball.mesh.bounds().unwrap();
+        assert!((high - low - DVec3::new(1.0, 2.0, 1.0)).length() < 1e-14, "stretched, then turned");
+        assert_eq!(ball.mesh.paint, Paint::Uniform([0.1, 0.2, 0.3]));
+        assert_eq!(scene.bodies[1].name, "cube1");
+        assert_eq!(scene.bodies[1].mesh.paint, Paint::Uniform([0.0, 0.0, 1.0]));
+        assert_eq!(scene.view.event, Event::new(1.0, 0.0, -4.0, 1.0));
+        assert_eq!(scene.view.projection, Projection::Fisheye);
+        assert_eq!(scene.view.size, [64, 48]);
+        assert!(scene.camera().is_ok());
+    }
+
+    #[test]
+    fn errors_name_the_line_and_the_nearest_key() {
+        let cube = "[[body]]\nmesh = \"cube\"\n";
+        for (text, parts) in [
+            (format!("{cube}velocty = [0.9, 0, 0]\n"), vec!["s.toml:3:", "'velocty'", "'velocity'"]),
+            (format!("[camra]\ntime = 0\n{cube}"), vec!["s.toml:1:", "'camra'", "'camera'"]),
+            (format!("{cube}velocity = [0.9, 0.9, 0]\n"), vec!["s.toml:3:", "velocity", "not below 1"]),
+            (format!("{cube}gamma = 0.5\n"), vec!["s.toml:3:", "below 1"]),
+            (format!("{cube}gamma = 2\nbeta = 0.5\n"), vec!["beta and gamma"]),
+            (format!("{cube}direction = [1, 0, 0]\n"), vec!["s.toml:3:", "speed"]),
+            (format!("{cube}position = [nan, 0, 0]\n"), vec!["s.toml:3:", "position"]),
+            (format!("{cube}scale = 0\n"), vec!["s.toml:3:", "scale"]),
+            (format!("{cube}material = \"red\"\n"), vec!["s.toml:3:", "material.red"]),
+            (format!("{cube}{cube}{cube}"), vec![]),
+            ("[[body]]\nmesh = \"cubee\"\n".into(), vec!["s.toml:2:", "'cube'"]),
+            ("[[body]]\nmesh = \"none.obj\"\n".into(), vec!["s.toml:2:", "none.obj"]),
+            ("[[body]]\n".into(), vec!["mesh"]),
+            ("".into(), vec!["[[body]]"]),
+            ("[[body]\n".into(), vec!["s.toml:1:"]),
+            (format!("[camera]\nprojection = \"fish\"\n{cube}"), vec!["s.toml:2:", "'fisheye'"]),
+            (format!("[material.a]\ncolor = \"#12\"\n{cube}material = \"a\"\n"), vec!["s.toml:2:", "#rrggbb"]),
+        ] {
+            if parts.is_empty() {
+                assert!(parse_scene(&text, Path::new("s.toml")).is_ok());
+                continue;
+            }
+            let message = error(&text);
+            for part in parts {
+                assert!(message.contains(part), "{text}\n→ {message}\nlacks {part}");
+            }
+        }
+    }
+}

@@ -1,0 +1,72 @@
+use super::{Aim, Body, Mesh, Scene, View};
+use crate::relativity::Motion;
+use glam::DVec3;
+use std::sync::Arc;
+use terrell_geodesic::{Celerity, Event};
+
+/// A scene around one mesh: it passes a camera at rest, square to its motion, at a distance from which all of
+/// it is seen, and the picture is taken when its centre appears abreast.
+///
+/// The camera looks along −z with y up, as glTF viewers do, or as near to that as square to the motion allows.
+/// A body's bounding sphere seen abreast keeps the angular size it has at rest at that distance (Penrose), so
+/// one distance serves all speeds.
+pub fn framed(name: &str, mesh: Mesh, celerity: Celerity, notes: Vec<String>) -> Scene {
+    let (low, high) = mesh.bounds().unwrap_or((DVec3::ZERO, DVec3::ZERO));
+    let centre = 0.5 * (low + high);
+    let radius = (0.5 * (high - low).length()).max(1e-30);
+    let view = View::default();
+
+    let along = celerity.direction();
+    let square = |v: DVec3| along.map_or(v, |axis| v - axis * v.dot(axis));
+    let forward = [-DVec3::Z, -DVec3::X, DVec3::Y]
+        .into_iter()
+        .map(square)
+        .find(|v| v.length() > 0.5)
+        .unwrap_or(-DVec3::Z)
+        .normalize();
+    let up = [DVec3::Y, DVec3::Z].into_iter().find(|u| u.cross(forward).length() > 0.5).unwrap_or(DVec3::X);
+
+    // The smaller half-field of the usual picture, and a margin.
+    let half = 0.5 * View::usual_fov_deg(view.projection).to_radians();
+    let distance = 1.1 * radius / half.sin();
+
+    // The rest frame's origin passes so that the centre is abreast at −distance, seen at 0.
+    let motion = Motion { celerity, origin: Event::at(-distance, distance * forward) };
+    let to_centre = motion.world_from_rest::<f64>() * terrell_geodesic::FourVector::from_parts(0.0, centre);
+    let motion = Motion { celerity, origin: motion.origin + (-to_centre) };
+    Scene {
+        name: name.to_owned(),
+        bodies: vec![Body { name: name.to_owned(), mesh: Arc::new(mesh), motion }],
+        view: View { aim: Aim::Forward(forward), up, ..view },
+        notes,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::relativity::ApparentMap;
+
+    #[test]
+    fn the_whole_mesh_is_in_the_picture_at_every_speed_and_direction() {
+        let mut vertices = Vec::new();
+        for i in 0..40 {
+            let a = f64::from(i);
+            vertices.push(DVec3::new(a.sin(), (1.7 * a).cos() * 3.0, (2.9 * a).sin()) * 5.0 + DVec3::new(100.0, 3.0, -7.0));
+        }
+        let mesh = Mesh::new(&vertices, vec![[0, 1, 2]]);
+        for direction in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(1.0, -2.0, 0.5)] {
+            for gamma in [1.0, 1.2, 5.0, 1e3, 1e6] {
+                let celerity = Celerity::from_gamma(gamma, direction).unwrap();
+                let scene = framed("m", mesh.clone(), celerity, vec![]);
+                let camera = scene.camera().unwrap();
+                let map = ApparentMap::new(&scene.bodies[0].motion, &camera.observer);
+                for v in &vertices {
+                    let pixel = camera.lens.pixel(map.see(*v).position).unwrap();
+                    let inside = pixel.x > 0.0 && pixel.y > 0.0 && pixel.x < 1280.0 && pixel.y < 720.0;
+                    assert!(inside, "{direction} γ {gamma}: {pixel}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+use super::{ImportError, Imported, ReadFile, beside};
+use crate::scene::{Mesh, Paint};
+use std::cell::RefCell;
+use std::path::Path;
+
+/// OBJ with MTL diffuse colours (taken as linear) or vertex colours; triangles are numbered in the file's
+/// order, polygons cut into fans.
+pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imported, ImportError> {
+    let fault = |line, message: String| ImportError::Contents { path: path.to_owned(), line, message };
+    let text = std::str::from_utf8(bytes)
+        .map_err(|e| fault(Some(1 + bytes[..e.valid_up_to()].iter().filter(|&&b| b == b'\n').count()), "this is not text, so no OBJ file".into()))?;
+    let notes = RefCell::new(Vec::new());
+    let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
+    let load_materials = |library: &Path| {
+        let library = beside(path, library);
+        match read(&library) {
+            Ok(bytes) => tobj::load_mtl_buf(&mut bytes.as_slice()),
+            Err(e) => {
+                notes.borrow_mut().push(format!("no material colours: {e}"));
+                Err(tobj::LoadError::OpenFileFailed)
+            }
+        }
+    };
+    let (models, materials) = tobj::load_obj_buf(&mut { bytes }, &options, load_materials)
+        .map_err(|e| {
+            let line = faulty_line(text);
+            let what = line.and_then(|l| text.lines().nth(l - 1)).map(|l| format!(" in '{}'", l.trim()));
+            fault(line, format!("{e}{}", what.unwrap_or_default()))
+        })?;
+    let materials = materials.unwrap_or_else(|e| {
+        if e != tobj::LoadError::OpenFileFailed {
+            notes.borrow_mut().push(format!("no material colours: the material library is malformed ({e})"));
+        }
+        Vec::new()
+    });
+
+    let mut mesh = Mesh::default();
+    let mut colored = false;
+    for model in models {
+        let source = model.mesh;
+        let coordinate = |i: usize| source.positions.iter().skip(i).step_by(3).copied().collect();
+        let triples = |values: &[f64]| -> Vec<[f32; 3]> {
+            values.chunks_exact(3).map(|v| [v[0] as f32, v[1] as f32, v[2] as f32]).collect()
+        };
+        let material = source.material_id.and_then(|id| materials.get(id));
+        let diffuse = material.and_then(|m| m.diffuse);
+        colored |= diffuse.is_some() || !source.vertex_color.is_empty();
+        let paint = if source.vertex_color.is_empty() {
+            diffuse.map_or_else(Paint::default, |c| Paint::Uniform(c.map(|v| v as f32)))
+        } else {
+            Paint::Vertices(triples(&source.vertex_color))
+        };
+        mesh.append(Mesh {
+            x: coordinate(0),
+            y: coordinate(1),
+            z: coordinate(2),
+            triangles: source.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+            paint,
+            uv: source.texcoords.chunks_exact(2).map(|v| [v[0] as f32, v[1] as f32]).collect(),
+            normals: triples(&source.normals),
+            one_sided: Vec::new(),
+        });
+    }
+    let mut notes = notes.into_inner();
+    if !colored {
+        mesh.paint_as_clay();
+        notes.push("the mesh has no colours; painted in clay by the direction its faces look".into());
+    }
+    Ok(Imported { mesh, notes })
+}
+
+/// The first line (from 1) that cannot be right: numbers that are none, indices that lead nowhere.
+fn faulty_line(text: &str) -> Option<usize> {
+    let mut counts = [0i64; 3];
+    for (number, line) in text.lines().enumerate() {
+        let mut words = line.split_whitespace();
+        let keyword = words.next();
+        let wrong = match keyword {
+            Some("v" | "vt" | "vn") => {
+                let which = ["v", "vt", "vn"].iter().position(|k| keyword == Some(k)).unwrap_or(0);
+                counts[which] += 1;
+                let numbers: Vec<_> = words.map(str::parse::<f64>).collect();
+                numbers.iter().any(Result::is_err) || numbers.len() < [3, 1, 3][which]
+            }
+            Some("f") => words.any(|corner| {
+                corner.split('/').enumerate().any(|(which, index)| match index.parse::<i64>() {
+                    Ok(i) => which > 2 || i == 0 || i > counts[which] || -i > counts[which],
+                    Err(_) => !(index.is_empty() && which > 0),
+                })
+            }),
+            _ => false,
+        };
+        if wrong {
+            return Some(number + 1);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::import_obj;
+    use super::*;
+
+    const SQUARE: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red\nf 1 2 3 4\nusemtl none\nf -4 -3 -2\n";
+
+    #[test]
+    fn triangles_are_numbered_as_in_the_file_and_coloured_by_their_material() {
+        let mesh = import_obj(SQUARE, "newmtl red\nKd 0.7 0.1 0.2\n", "square.obj").unwrap().mesh;
+        assert_eq!(mesh.triangles.len(), 3);
+        let Paint::Faces(colors) = &mesh.paint else { panic!("{:?}", mesh.paint) };
+        assert_eq!(colors[0], [0.7, 0.1, 0.2]);
+        assert_eq!(colors[1], colors[0]);
+        assert_ne!(colors[2], colors[0]);
+        assert_eq!(mesh.corners(0).map(|c| (c.x, c.y)), [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]);
+    }
+
+    #[test]
+    fn a_bad_line_is_named() {
+        for (text, line) in [
+            ("v 0 0 0\nv 1 x 0\n", 2),
+            ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", 4),
+            ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 zwei\n", 4),
+            ("v 0 0\n", 1),
+        ] {
+            let message = import_obj(text, "", "bad.obj").unwrap_err().to_string();
+            assert!(message.starts_with(&format!("bad.obj:{line}: ")), "{message}");
+        }
+    }
+
+    #[test]
+    fn nothing_to_draw_is_an_error() {
+        for text in ["", "# empty\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"] {
+            assert!(import_obj(text, "", "bad.obj").is_err(), "{text:?}");
+        }
+        assert!(parse(&[0xff, 0xfe, 0x00], Path::new("bad.obj"), &|_| Ok(vec![])).is_err());
+    }
+
+    #[test]
+    fn vertex_colours_are_read() {
+        let text = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n";
+        let mesh = import_obj(text, "", "a.obj").unwrap().mesh;
+        assert_eq!(mesh.paint.at(0, [0, 1, 2], [0.5, 0.25, 0.25]), [0.5, 0.25, 0.25]);
+    }
+}
