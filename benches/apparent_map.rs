@@ -42,7 +42,11 @@ impl<R: MapLane> Arrays<R> {
                 let rest = Points { x: &self.from[0], y: &self.from[1], z: &self.from[2] };
                 let [x, y, z, distance, doppler] = &mut self.to;
                 let seen = PointsMut { x, y, z, distance, doppler };
-                if base { map.see_all_base(rest, seen) } else { map.see_all(rest, seen) }
+                if base {
+                    map.see_all_base(rest, seen)
+                } else {
+                    map.see_all(rest, seen)
+                }
                 std::hint::black_box(&mut self.to);
                 times[which].push(start.elapsed().as_secs_f64());
             }

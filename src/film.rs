@@ -9,7 +9,7 @@ pub struct Film {
     pub height: u32,
     /// Linear sRGB radiance, averaged over the samples of the pixel.
     pub color: Vec<[f32; 3]>,
-    /// Apparent distance r at the pixel's centre; infinite where nothing is seen.
+    /// Apparent distance r at the pixel's centre; 0 where nothing is seen.
     pub distance: Vec<f32>,
     /// Doppler factor at the pixel's centre; 0 where nothing is seen.
     pub doppler: Vec<f32>,
@@ -30,7 +30,7 @@ impl Film {
             width,
             height,
             color: vec![[0.0; 3]; pixels],
-            distance: vec![f32::INFINITY; pixels],
+            distance: vec![0.0; pixels],
             doppler: vec![0.0; pixels],
             body: vec![NOTHING; pixels],
             face: vec![NOTHING; pixels],

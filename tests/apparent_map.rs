@@ -72,7 +72,8 @@ fn the_independent_reference_agrees() {
         assert!((sight.doppler / row["D"].as_f64().unwrap() - 1.0).abs() <= 1e-15 * condition);
         let towards = map.doppler_towards(sight.position / sight.distance);
         // The direction itself is rounded, which D feels up to γ times where it changes fastest.
-        let feels = 1.0 + map.speed() * sight.doppler * (1.0 - sight.cos_theta_observer.powi(2)).max(0.0).sqrt();
+        let feels =
+            1.0 + map.speed() * sight.doppler * (1.0 - sight.cos_theta_observer.powi(2)).max(0.0).sqrt();
         assert!((towards / sight.doppler - 1.0).abs() <= 1e-15 * condition * feels);
     }
     println!("worst error over r, per conditioning: {worst:e}");
@@ -117,7 +118,11 @@ fn vectors_and_scalars_agree_and_so_do_base_and_avx2() {
         let [a, b, c, d, e] = &mut out[..] else { unreachable!() };
         let seen = PointsMut { x: a, y: b, z: c, distance: d, doppler: e };
         let rest = Points { x: &x, y: &y, z: &z };
-        if base { map.see_all_base(rest, seen) } else { map.see_all(rest, seen) }
+        if base {
+            map.see_all_base(rest, seen)
+        } else {
+            map.see_all(rest, seen)
+        }
         out
     };
     let (base, fast) = (fill(true), fill(false));
@@ -150,7 +155,8 @@ fn a_straight_rod_is_seen_as_the_hyperbola_of_eq_2() {
         // (x/γ − x′)² − β²(x′² + ρ²) = 0 with x′: (x − γx′)² = γ²β²(x′² + ρ²)
         let (gamma, speed) = (celerity.gamma(), celerity.magnitude());
         let (x_rest, rho) = (number("x_rest"), number("rho"));
-        let residual = (sight.position.x - gamma * x_rest).powi(2) - speed * speed * (x_rest * x_rest + rho * rho);
+        let residual =
+            (sight.position.x - gamma * x_rest).powi(2) - speed * speed * (x_rest * x_rest + rho * rho);
         assert!(residual.abs() <= 16.0 * f64::EPSILON * (gamma * sight.distance).powi(2).max(1.0));
         assert!(sight.position.x <= gamma * x_rest, "the other branch is the future light cone");
     }
@@ -177,7 +183,8 @@ fn the_inverse_leads_back() {
 fn the_cube_of_fig_2_is_where_the_reference_sees_it() {
     for row in cases()["fig2_cube"]["rows"].as_array().unwrap() {
         let celerity = Celerity::from_beta(DVec3::X * row["beta"].as_f64().unwrap()).unwrap();
-        let offset: Vec<f64> = row["object_offset"].as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect();
+        let offset: Vec<f64> =
+            row["object_offset"].as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect();
         let motion = Motion { celerity, origin: Event::new(offset[0], offset[1], offset[2], offset[3]) };
         let map = ApparentMap::new(&motion, &Tetrad::of_world(Event::origin()));
         let corners = row["corners"].as_array().unwrap();

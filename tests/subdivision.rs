@@ -222,7 +222,10 @@ fn a_scene_of_some_hundred_edges_costs_at_most_5_per_cent_more_than_the_greedy_o
             .collect();
         let ours: usize = rods.iter().map(|rod| rod.polyline(&map, &field, tolerance).len() - 1).sum();
         let least: usize = rods.iter().map(|rod| greedy_count(*rod, &map, &lens, tolerance)).sum();
-        println!("γβ {celerity}, {tolerance} px: {ours} pieces, greedy {least}: {:+.2} %", 100.0 * (ours as f64 / least as f64 - 1.0));
+        println!(
+            "γβ {celerity}, {tolerance} px: {ours} pieces, greedy {least}: {:+.2} %",
+            100.0 * (ours as f64 / least as f64 - 1.0)
+        );
         assert!(ours as f64 <= 1.05 * least as f64, "{ours} against {least}");
         assert!(ours >= least, "greedy is least: {ours} against {least}");
     }
@@ -252,9 +255,8 @@ fn the_reference_counts_the_same_pieces_for_the_cube() {
         let map = ApparentMap::new(&motion, &observer);
         let lens = Lens::new(Projection::Pinhole, 60.0, 160, 120).unwrap();
         let field = Field::new(&lens);
-        let corner = |i: usize| {
-            DVec3::new((i >> 2) as f64 - 0.5, ((i >> 1) & 1) as f64 - 0.5, (i & 1) as f64 - 0.5)
-        };
+        let corner =
+            |i: usize| DVec3::new((i >> 2) as f64 - 0.5, ((i >> 1) & 1) as f64 - 0.5, (i & 1) as f64 - 0.5);
         let rods: Vec<Rod> = (0..8)
             .flat_map(|i| [1, 2, 4].map(|bit| (i, i | bit)))
             .filter(|(i, j)| i != j)
@@ -263,7 +265,9 @@ fn the_reference_counts_the_same_pieces_for_the_cube() {
         assert_eq!(rods.len(), 12);
         for (n, max) in row["n"].as_array().unwrap().iter().zip(row["max_px"].as_array().unwrap()) {
             let (n, max) = (n.as_u64().unwrap() as usize, max.as_f64().unwrap());
-            let most = |tolerance: f64| rods.iter().map(|r| r.polyline(&map, &field, tolerance).len() - 1).max().unwrap();
+            let most = |tolerance: f64| {
+                rods.iter().map(|r| r.polyline(&map, &field, tolerance).len() - 1).max().unwrap()
+            };
             // Equal error is at least as good as equal pieces, and about as many.
             assert!(most(max * 1.001) <= n, "{n} pieces should do for {max} px, not {}", most(max * 1.001));
             assert!(most(max * 0.7) > n.saturating_sub(1), "{n}");
@@ -313,7 +317,8 @@ fn shared_edges_are_cut_alike() {
             let mut nodes: Vec<[u64; 3]> = Vec::new();
             for triangle in &seen.triangles {
                 for (i, v) in triangle.corners.iter().enumerate() {
-                    let weights = seen.rest_weights(triangle, [0, 1, 2].map(|k| if k == i { 1.0 } else { 0.0 }));
+                    let weights =
+                        seen.rest_weights(triangle, [0, 1, 2].map(|k| if k == i { 1.0 } else { 0.0 }));
                     // a and b are vertices 0 and 1: what has no part of vertex 2 lies between them.
                     let third = mesh.triangles[0].iter().position(|&v| v == 2).unwrap();
                     let node = seen.vertices[*v as usize];

@@ -187,8 +187,13 @@ impl Arc {
         };
         let n_sky = self.direction(middle);
         let binormal = self.pole + self.curvature * n_sky;
-        let deviation =
-            field.deviation([n0, n1], n_sky, binormal, self.direction(screen), field.is_outside(nearest_part));
+        let deviation = field.deviation(
+            [n0, n1],
+            n_sky,
+            binormal,
+            self.direction(screen),
+            field.is_outside(nearest_part),
+        );
         (deviation, field.tolerance_at(nearest_part, tolerance))
     }
 
@@ -228,8 +233,11 @@ impl Arc {
         }
         // What is left are single pieces where the picture ends: halve those.
         for _ in 0..40 {
-            let wrong: Vec<f64> =
-                pairs(&cuts.chi).into_iter().filter(|&p| excess(p) > 1.0).map(|[a, b]| 0.5 * (a + b)).collect();
+            let wrong: Vec<f64> = pairs(&cuts.chi)
+                .into_iter()
+                .filter(|&p| excess(p) > 1.0)
+                .map(|[a, b]| 0.5 * (a + b))
+                .collect();
             if wrong.is_empty() || cuts.chi.len() > MOST_CUTS {
                 break;
             }
@@ -323,7 +331,8 @@ mod tests {
                 for direction in [DVec3::X, -DVec3::X, DVec3::new(0.6, 0.48, 0.64)] {
                     let celerity = Celerity::new(direction * speed).unwrap();
                     let motion = Motion { celerity, origin: Event::origin() };
-                    let observer = Tetrad::new(Event::origin(), Celerity::at_rest(), DVec3::Y, DVec3::Z).unwrap();
+                    let observer =
+                        Tetrad::new(Event::origin(), Celerity::at_rest(), DVec3::Y, DVec3::Z).unwrap();
                     let map = ApparentMap::new(&motion, &observer);
                     let arc = Arc::new(&map, from, to).unwrap();
                     assert!(arc.chi[0] < arc.chi[1]);
@@ -331,8 +340,15 @@ mod tests {
                         let chi = arc.chi[0] + (arc.chi[1] - arc.chi[0]) * f64::from(i) / 20.0;
                         let sight = map.see(from.lerp(to, arc.parameter(chi)));
                         let n = sight.position / sight.distance;
-                        assert!((n - arc.direction(chi)).length() < tolerance, "{speed} {from} {to} {chi}: {n} {}", arc.direction(chi));
-                        assert!((sight.doppler / arc.doppler(chi) - 1.0).abs() < tolerance.max(1e-12) * speed.max(1.0));
+                        assert!(
+                            (n - arc.direction(chi)).length() < tolerance,
+                            "{speed} {from} {to} {chi}: {n} {}",
+                            arc.direction(chi)
+                        );
+                        assert!(
+                            (sight.doppler / arc.doppler(chi) - 1.0).abs()
+                                < tolerance.max(1e-12) * speed.max(1.0)
+                        );
                     }
                 }
             }

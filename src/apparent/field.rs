@@ -32,7 +32,12 @@ impl Field {
         let half = |side: u32, focal: f64| 0.5 * f64::from(side) / focal;
         let focal = lens.focal();
         let (x, y) = (half(lens.width(), focal.x), half(lens.height(), focal.y));
-        let sides = [DVec3::new(1.0, 0.0, x), DVec3::new(-1.0, 0.0, x), DVec3::new(0.0, 1.0, y), DVec3::new(0.0, -1.0, y)];
+        let sides = [
+            DVec3::new(1.0, 0.0, x),
+            DVec3::new(-1.0, 0.0, x),
+            DVec3::new(0.0, 1.0, y),
+            DVec3::new(0.0, -1.0, y),
+        ];
         Self {
             projection: lens.projection(),
             focal: focal.max_element(),
@@ -94,7 +99,9 @@ impl Field {
     pub(super) fn greatest_scale(&self) -> f64 {
         match self.projection {
             Projection::Pinhole => self.cos_corner.powi(-2),
-            Projection::Fisheye => self.scale(DVec3::new((1.0 - self.cos_corner * self.cos_corner).sqrt(), 0.0, self.cos_corner)),
+            Projection::Fisheye => {
+                self.scale(DVec3::new((1.0 - self.cos_corner * self.cos_corner).sqrt(), 0.0, self.cos_corner))
+            }
             Projection::Panorama => MAX_SCALE,
         }
     }

@@ -33,7 +33,9 @@ const WARP: f64 = 4.0;
 
 /// A tolerance that would need more triangles than allowed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("a tolerance of {tolerance} px cuts this mesh into more than {most} triangles; use a larger tolerance")]
+#[error(
+    "a tolerance of {tolerance} px cuts this mesh into more than {most} triangles; use a larger tolerance"
+)]
 pub struct TooManyPieces {
     /// What was asked, pixels.
     pub tolerance: f64,
@@ -60,7 +62,12 @@ impl ApparentMesh {
     ///
     /// # Errors
     /// If that takes more triangles than allowed.
-    pub fn new(mesh: &Mesh, map: &ApparentMap, field: &Field, how: &Subdivision) -> Result<Self, TooManyPieces> {
+    pub fn new(
+        mesh: &Mesh,
+        map: &ApparentMap,
+        field: &Field,
+        how: &Subdivision,
+    ) -> Result<Self, TooManyPieces> {
         let (mut vertices, doppler) = see_vertices(mesh, map);
         if map.speed() == 0.0 {
             return Ok(Self::linear(mesh, map));
@@ -71,8 +78,17 @@ impl ApparentMesh {
         let chunks: Vec<Chunk> = (0..mesh.triangles.len().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
-                let mut cutter =
-                    Cutter { mesh, map, field, how, doppler: &doppler, made: &made, out: Chunk::default(), own, sides: Vec::new() };
+                let mut cutter = Cutter {
+                    mesh,
+                    map,
+                    field,
+                    how,
+                    doppler: &doppler,
+                    made: &made,
+                    out: Chunk::default(),
+                    own,
+                    sides: Vec::new(),
+                };
                 let faces = chunk * CHUNK..((chunk + 1) * CHUNK).min(mesh.triangles.len());
                 faces.into_iter().try_for_each(|face| cutter.cut(face)).map(|()| cutter.out).ok_or(fault)
             })
@@ -229,7 +245,8 @@ impl Cutter<'_> {
         let doppler = 0.75 * self.doppler[ia as usize].min(self.doppler[ib as usize]);
         let apparent = angle / doppler;
         // |N′·û| ≤ 1 and min(1, D) ≤ 1 make one bound for outline and surface.
-        speed * apparent * apparent * self.field.focal() * self.field.greatest_scale() <= 8.0 * self.how.tolerance
+        speed * apparent * apparent * self.field.focal() * self.field.greatest_scale()
+            <= 8.0 * self.how.tolerance
     }
 
     fn count(&self, pieces: usize) -> Option<()> {
@@ -324,7 +341,8 @@ impl Cutter<'_> {
             .max_by(|&i, &j| sides[i].extent().total_cmp(&sides[j].extent()));
         let Some(most) = most else { return self.leaf(face, corners, depth) };
         let pieces = sides[most].pieces;
-        if pieces > 2 && depth % 2 == 1 && self.misses_picture(&corners.map(|c| self.map.offset_rest(c.rest))) {
+        if pieces > 2 && depth % 2 == 1 && self.misses_picture(&corners.map(|c| self.map.offset_rest(c.rest)))
+        {
             return Some(());
         }
 
@@ -353,7 +371,12 @@ impl Cutter<'_> {
             for i in 0..3 {
                 let j = (i + 1) % 3;
                 let rim = self.side(corners[i], corners[j], std::iter::empty(), 1.0);
-                self.split(face, [middle, corners[i], corners[j]], [spokes[i], rim, spokes[j].turned()], depth + 6)?;
+                self.split(
+                    face,
+                    [middle, corners[i], corners[j]],
+                    [spokes[i], rim, spokes[j].turned()],
+                    depth + 6,
+                )?;
             }
             self.sides.truncate(kept);
             return Some(());

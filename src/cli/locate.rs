@@ -39,12 +39,14 @@ pub struct Locate {
     points: Vec<DVec3>,
 }
 
-const HEADER: &str = "x,y,z,apparent_x,apparent_y,apparent_z,distance,doppler,cos_theta_rest,cos_theta_observer,emission_time";
+const HEADER: &str =
+    "x,y,z,apparent_x,apparent_y,apparent_z,distance,doppler,cos_theta_rest,cos_theta_observer,emission_time";
 
 impl Locate {
     pub fn run(self) -> Result<(), Fault> {
         let speed = self.velocity.speed()?;
-        let speed = speed.ok_or("a velocity is needed: --beta, --gamma with --direction, --celerity or --rapidity")?;
+        let speed = speed
+            .ok_or("a velocity is needed: --beta, --gamma with --direction, --celerity or --rapidity")?;
         let motion = Motion { celerity: of_resting(speed)?, origin: self.offset };
         let map = ApparentMap::new(&motion, &Tetrad::of_world(self.observer));
         let mut out = BufWriter::new(std::io::stdout().lock());
@@ -61,11 +63,14 @@ impl Locate {
 
     fn from_csv(&self, map: &ApparentMap, out: &mut impl Write) -> Result<(), Fault> {
         let mut lines = std::io::stdin().lock().lines().enumerate();
-        let (_, header) = lines.next().ok_or("standard input is empty; CSV with the header x,y,z is needed")?;
+        let (_, header) =
+            lines.next().ok_or("standard input is empty; CSV with the header x,y,z is needed")?;
         let header = header.map_err(|e| format!("standard input, line 1: {e}"))?;
         let header: Vec<_> = header.trim_start_matches('\u{feff}').split(',').map(str::trim).collect();
         if header != ["x", "y", "z"] {
-            return Err(format!("standard input, line 1: the header is '{}', not 'x,y,z'", header.join(",")).into());
+            return Err(
+                format!("standard input, line 1: the header is '{}', not 'x,y,z'", header.join(",")).into()
+            );
         }
         writeln!(out, "{HEADER}")?;
         for (index, line) in lines {

@@ -288,7 +288,8 @@ fn summary(
         })
         .collect();
     let doppler = film.doppler.iter().zip(&film.body).filter(|(_, b)| **b >= 0).map(|(d, _)| *d);
-    let doppler = doppler.fold(None, |range: Option<[f32; 2]>, d| Some(range.map_or([d, d], |[l, h]| [l.min(d), h.max(d)])));
+    let doppler = doppler
+        .fold(None, |range: Option<[f32; 2]>, d| Some(range.map_or([d, d], |[l, h]| [l.min(d), h.max(d)])));
     json!({
         "terrell": env!("CARGO_PKG_VERSION"),
         "scene": scene.name,

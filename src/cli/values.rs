@@ -49,11 +49,17 @@ pub enum SpeedOrVector {
 }
 
 pub fn speed_or_vector(text: &str) -> Result<SpeedOrVector, String> {
-    if text.contains(',') { vector(text).map(SpeedOrVector::Vector) } else { number(text).map(SpeedOrVector::Speed) }
+    if text.contains(',') {
+        vector(text).map(SpeedOrVector::Vector)
+    } else {
+        number(text).map(SpeedOrVector::Speed)
+    }
 }
 
 pub fn size(text: &str) -> Result<[u32; 2], String> {
-    let parts = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
+    let parts = text
+        .split_once(['x', 'X', '×'])
+        .and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
     parts.ok_or_else(|| format!("'{text}' is not of the form WIDTHxHEIGHT, such as 1280x720"))
 }
 

@@ -59,7 +59,9 @@ impl VelocityFlags {
 
     fn vector(&self, flag: &str, velocity: Celerity) -> Result<Option<Speed>, Fault> {
         match self.direction {
-            Some(_) => Err(format!("{flag} with three numbers already has a direction; remove --direction").into()),
+            Some(_) => {
+                Err(format!("{flag} with three numbers already has a direction; remove --direction").into())
+            }
             None => Ok(Some(Speed::Velocity(velocity))),
         }
     }

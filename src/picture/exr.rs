@@ -3,8 +3,7 @@ use exr::prelude::*;
 use std::io::{Seek, Write};
 
 /// Writes everything the film holds as an OpenEXR file of 32-bit float channels: R G B (linear sRGB
-/// radiance), distance (apparent r; infinite where nothing is seen), doppler (0 there), body and face (−1
-/// there).
+/// radiance), distance (apparent r) and doppler, both 0 where nothing is seen, body and face, −1 there.
 ///
 /// # Errors
 /// If the writer fails.

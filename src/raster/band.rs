@@ -56,7 +56,15 @@ impl Band {
         }
     }
 
-    fn rasterise(&mut self, bodies: &[Drawable<'_>], bins: &Bins, lens: &Lens, top: u32, offset: DVec2, pixels: usize) {
+    fn rasterise(
+        &mut self,
+        bodies: &[Drawable<'_>],
+        bins: &Bins,
+        lens: &Lens,
+        top: u32,
+        offset: DVec2,
+        pixels: usize,
+    ) {
         self.nearness.clear();
         self.nearness.resize(pixels, 0.0);
         self.triangle.clear();

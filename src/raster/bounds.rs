@@ -41,9 +41,7 @@ impl<'a> Bounder<'a> {
     pub fn bounds(&self, screen: [[f32; 2]; 3], corners: impl Fn() -> [DVec3; 3]) -> [Option<Rect>; 2] {
         let [a, b, c] = screen;
         if (a[0] + b[0] + c[0]).is_finite() && (a[1] + b[1] + c[1]).is_finite() {
-            let range = |i: usize| {
-                [f64::from(a[i].min(b[i]).min(c[i])), f64::from(a[i].max(b[i]).max(c[i]))]
-            };
+            let range = |i: usize| [f64::from(a[i].min(b[i]).min(c[i])), f64::from(a[i].max(b[i]).max(c[i]))];
             return [self.rect(range(0), range(1)), None];
         }
         match self.lens.projection() {
@@ -99,7 +97,8 @@ impl<'a> Bounder<'a> {
             }
         }
         let points = points.into_iter().map(|p| middle + focal * p);
-        let (low, high) = points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        let (low, high) =
+            points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
         [self.rect([low.x, high.x], [low.y, high.y]), None]
     }
 

@@ -44,7 +44,9 @@ impl Samples {
     pub fn new(count: u32) -> Self {
         // Reciprocals of the plastic number and its square.
         const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
-        Self((0..count.clamp(1, Self::MOST)).map(|i| STEP.map(|s| (0.5 + s * f64::from(i)).fract())).collect())
+        Self(
+            (0..count.clamp(1, Self::MOST)).map(|i| STEP.map(|s| (0.5 + s * f64::from(i)).fract())).collect(),
+        )
     }
 
     /// Least and greatest offset, x and y.

@@ -71,7 +71,8 @@ impl ApparentMap {
         let gamma = (one + speed * speed).sqrt();
         let k = gamma + speed;
         // What 32 digits leave of a zero is noise; without it an unrotated observer is recognised.
-        let axes = observer_from_rest.axes().map(|row| row.map(|c| if c.high.abs() < 1e-20 { 0.0 } else { c.high }));
+        let axes =
+            observer_from_rest.axes().map(|row| row.map(|c| if c.high.abs() < 1e-20 { 0.0 } else { c.high }));
 
         Self {
             f64: Constants {
@@ -173,7 +174,8 @@ impl ApparentMap {
         let axis = self.axis_observer();
         let c = n.dot(axis);
         let square = n.cross(axis).length_squared();
-        let (plus, minus) = if c < 0.0 { (square / (1.0 - c), 1.0 - c) } else { (1.0 + c, square / (1.0 + c)) };
+        let (plus, minus) =
+            if c < 0.0 { (square / (1.0 - c), 1.0 - c) } else { (1.0 + c, square / (1.0 + c)) };
         2.0 / (self.f64.k * plus + self.f64.inverse_k * minus)
     }
 

@@ -203,13 +203,7 @@ fn two_sum<R: Lane>(a: R, b: R) -> Pair<R> {
 /// With a = r′ + P and b = r′ − P, the one that cancels replaced through a·b = Q²:
 /// r = (k·b + a/k)/2, x∥ = (a/k − k·b)/2. Every step is backward stable, at every γ.
 #[inline(always)]
-fn boosted<R: Lane>(
-    along: R,
-    across: [R; 3],
-    axis: [R; 3],
-    k: R,
-    inverse_k: R,
-) -> ([R; 3], R, R, R) {
+fn boosted<R: Lane>(along: R, across: [R; 3], axis: [R; 3], k: R, inverse_k: R) -> ([R; 3], R, R, R) {
     let [wx, wy, wz] = across;
     let square = wx * wx + wy * wy + wz * wz;
     let before = (along * along + square).root();

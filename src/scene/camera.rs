@@ -69,7 +69,9 @@ impl Lens {
         let half = 0.5 * fov_deg.to_radians();
         let focal = match projection {
             Projection::Pinhole if !(fov_deg > 0.0 && fov_deg <= 175.0) => {
-                return Err(field("it needs more than 0° and at most 175° (beyond, use a fisheye or a panorama)"));
+                return Err(field(
+                    "it needs more than 0° and at most 175° (beyond, use a fisheye or a panorama)",
+                ));
             }
             Projection::Pinhole => DVec2::splat(0.5 * h / half.tan()),
             Projection::Fisheye if !(fov_deg > 0.0 && fov_deg <= 360.0) => {

@@ -127,7 +127,9 @@ struct Source<'a> {
 
 impl Source<'_> {
     fn fault(&self, at: Option<usize>, message: impl Into<String>) -> SceneError {
-        let line = at.map(|at| 1 + self.text.as_bytes()[..at.min(self.text.len())].iter().filter(|&&b| b == b'\n').count());
+        let line = at.map(|at| {
+            1 + self.text.as_bytes()[..at.min(self.text.len())].iter().filter(|&&b| b == b'\n').count()
+        });
         SceneError { path: self.path.to_owned(), line, message: message.into() }
     }
 
@@ -150,7 +152,11 @@ impl Source<'_> {
         }
     }
 
-    fn event(&self, time: &Option<Spanned<f64>>, position: &Option<Vector>) -> Result<Event<terrell_geodesic::World>, SceneError> {
+    fn event(
+        &self,
+        time: &Option<Spanned<f64>>,
+        position: &Option<Vector>,
+    ) -> Result<Event<terrell_geodesic::World>, SceneError> {
         let t = time.as_ref().map_or(Ok(0.0), |t| self.finite("time", t))?;
         let x = position.as_ref().map_or(Ok(DVec3::ZERO), |p| self.vector("position", p))?;
         Ok(Event::at(t, x))
@@ -172,7 +178,11 @@ impl Source<'_> {
         let vectors = found.len();
         if let Some(v) = keys.beta {
             let unit = direction.normalize_or_zero();
-            let made = if unit == DVec3::ZERO { Err(CelerityError::NoDirection) } else { Celerity::from_beta(unit * *v.get_ref()) };
+            let made = if unit == DVec3::ZERO {
+                Err(CelerityError::NoDirection)
+            } else {
+                Celerity::from_beta(unit * *v.get_ref())
+            };
             found.push(("beta", v.span().start, made));
         }
         if let Some(v) = keys.gamma {
@@ -237,7 +247,8 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     for (index, table) in file.body.iter().enumerate() {
         let body = read_body(&source, index, table, &file.material, &mut meshes, &mut notes)?;
         if bodies.iter().any(|b| b.name == body.name) {
-            return Err(source.at(&table.mesh, format!("two bodies are called '{}'; give one another name", body.name)));
+            return Err(source
+                .at(&table.mesh, format!("two bodies are called '{}'; give one another name", body.name)));
         }
         bodies.push(body);
     }
@@ -337,7 +348,10 @@ fn read_body(
             if axis == DVec3::ZERO {
                 return Err(source.at(&rotation.axis, "rotation.axis has length zero"));
             }
-            DQuat::from_axis_angle(axis, source.finite("rotation.angle_deg", &rotation.angle_deg)?.to_radians())
+            DQuat::from_axis_angle(
+                axis,
+                source.finite("rotation.angle_deg", &rotation.angle_deg)?.to_radians(),
+            )
         }
     };
     if table.scale.is_some() || table.rotation.is_some() {
@@ -352,13 +366,18 @@ fn read_body(
         rapidity: &table.rapidity,
         direction: &table.direction,
     };
-    let motion = Motion { celerity: source.celerity(&keys)?, origin: source.event(&table.time, &table.position)? };
+    let motion =
+        Motion { celerity: source.celerity(&keys)?, origin: source.event(&table.time, &table.position)? };
     let stem = Path::new(mesh_name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let name = table.name.clone().unwrap_or(if index == 0 { stem } else { format!("{stem}{index}") });
     Ok(Body { name, mesh: Arc::new(mesh), motion })
 }
 
-fn read_mesh(source: &Source<'_>, word: &Spanned<String>, notes: &mut Vec<String>) -> Result<Mesh, SceneError> {
+fn read_mesh(
+    source: &Source<'_>,
+    word: &Spanned<String>,
+    notes: &mut Vec<String>,
+) -> Result<Mesh, SceneError> {
     let name = word.get_ref();
     if let Some(mesh) = builtin_mesh(name) {
         return Ok(mesh);
@@ -383,7 +402,8 @@ fn read_color(source: &Source<'_>, place: &Spanned<Color>) -> Result<[f32; 3], S
         Color::Hex(text) => {
             let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii());
             let value = digits.and_then(|d| u32::from_str_radix(d, 16).ok());
-            let value = value.ok_or_else(|| source.at(place, format!("color '{text}' is not of the form #rrggbb")))?;
+            let value = value
+                .ok_or_else(|| source.at(place, format!("color '{text}' is not of the form #rrggbb")))?;
             Ok([16, 8, 0].map(|shift| crate::picture::linear((value >> shift & 0xff) as u8)))
         }
     }
@@ -471,7 +491,10 @@ mod tests {
             ("".into(), vec!["[[body]]"]),
             ("[[body]\n".into(), vec!["s.toml:1:"]),
             (format!("[camera]\nprojection = \"fish\"\n{cube}"), vec!["s.toml:2:", "'fisheye'"]),
-            (format!("[material.a]\ncolor = \"#12\"\n{cube}material = \"a\"\n"), vec!["s.toml:2:", "#rrggbb"]),
+            (
+                format!("[material.a]\ncolor = \"#12\"\n{cube}material = \"a\"\n"),
+                vec!["s.toml:2:", "#rrggbb"],
+            ),
         ] {
             if parts.is_empty() {
                 assert!(parse_scene(&text, Path::new("s.toml")).is_ok());

@@ -52,7 +52,10 @@ mod tests {
         let mut vertices = Vec::new();
         for i in 0..40 {
             let a = f64::from(i);
-            vertices.push(DVec3::new(a.sin(), (1.7 * a).cos() * 3.0, (2.9 * a).sin()) * 5.0 + DVec3::new(100.0, 3.0, -7.0));
+            vertices.push(
+                DVec3::new(a.sin(), (1.7 * a).cos() * 3.0, (2.9 * a).sin()) * 5.0
+                    + DVec3::new(100.0, 3.0, -7.0),
+            );
         }
         let mesh = Mesh::new(&vertices, vec![[0, 1, 2]]);
         for direction in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(1.0, -2.0, 0.5)] {

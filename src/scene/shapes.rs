@@ -181,7 +181,8 @@ fn column(builder: &mut Builder, at: DVec2, radius: f64, z: [f64; 2], sides: [[f
     for i in 0..AROUND {
         let angle = |i: u32| f64::from(i % AROUND) * std::f64::consts::TAU / f64::from(AROUND);
         let corner = |i: u32, z: f64| (at + radius * DVec2::from_angle(angle(i))).extend(z);
-        let facing = DVec2::from_angle(0.5 * (angle(i) + angle(i) + std::f64::consts::TAU / f64::from(AROUND)));
+        let facing =
+            DVec2::from_angle(0.5 * (angle(i) + angle(i) + std::f64::consts::TAU / f64::from(AROUND)));
         let color = blend(facing.extend(0.0), sides);
         builder.quad([corner(i, z[0]), corner(i + 1, z[0]), corner(i + 1, z[1]), corner(i, z[1])], color);
     }
@@ -223,9 +224,8 @@ pub fn lattice() -> Mesh {
                         let along = DVec3::AXES[axis];
                         let side = DVec3::splat(ROD) * (DVec3::ONE - along);
                         let (from, to) = (at + along * (0.9 * BALL), at + along * (1.0 - 0.9 * BALL));
-                        let shade = |color: [f32; 3]| {
-                            [0.75, 0.9, 1.0, 0.6, 1.1, 0.7].map(|s| color.map(|c| s * c))
-                        };
+                        let shade =
+                            |color: [f32; 3]| [0.75, 0.9, 1.0, 0.6, 1.1, 0.7].map(|s| color.map(|c| s * c));
                         let color = [[0.85, 0.3, 0.05], [0.1, 0.6, 0.15], [0.1, 0.25, 0.85]][axis];
                         builder.cuboid(from - side, to + side, shade(color));
                     }
@@ -259,7 +259,11 @@ mod tests {
     fn the_meshes_that_ship_are_those_made_here() {
         for (name, made) in [("cube", cube()), ("gate", gate()), ("lattice", lattice())] {
             let read = super::super::builtin_mesh(name).unwrap();
-            assert_eq!(read.triangles.len(), made.triangles.len(), "{name}: run `cargo run --example make_assets`");
+            assert_eq!(
+                read.triangles.len(),
+                made.triangles.len(),
+                "{name}: run `cargo run --example make_assets`"
+            );
             for t in 0..made.triangles.len() {
                 for (a, b) in read.corners(t).into_iter().zip(made.corners(t)) {
                     assert!((a - b).length() < 1e-6, "{name}");

@@ -54,7 +54,9 @@ pub enum ViewError {
         known: String,
     },
     /// The body does not move relative to the camera.
-    #[error("nearest {0}: that body and the camera are at rest relative to each other, so it is never seen to pass; give a velocity, or a time instead")]
+    #[error(
+        "nearest {0}: that body and the camera are at rest relative to each other, so it is never seen to pass; give a velocity, or a time instead"
+    )]
     NeverPasses(String),
     /// A time that is no number.
     #[error("the time {0} is not finite")]

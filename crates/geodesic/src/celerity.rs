@@ -34,7 +34,11 @@ impl std::fmt::Display for CelerityError {
                 write!(f, "γ = {gamma} is below 1; a body at rest has γ = 1")
             }
             Self::TooFast(celerity) => {
-                write!(f, "celerity γβ = {celerity:e} is beyond {:e}, where 32 digits no longer hold an event", Celerity::LIMIT)
+                write!(
+                    f,
+                    "celerity γβ = {celerity:e} is beyond {:e}, where 32 digits no longer hold an event",
+                    Celerity::LIMIT
+                )
             }
             Self::NoDirection => write!(f, "the direction of motion has length zero"),
         }

@@ -94,9 +94,8 @@ impl<To, From, S: Real> Lorentz<To, From, S> {
     /// R = L_ij − L_i0 L_0j/(1 + γ).
     pub fn axes(&self) -> [[S; 3]; 3] {
         let scale = S::from(1.0) + self.gamma();
-        let entry = |i: usize, j: usize| {
-            self.rows[i + 1][j + 1] - self.rows[i + 1][0] * self.rows[0][j + 1] / scale
-        };
+        let entry =
+            |i: usize, j: usize| self.rows[i + 1][j + 1] - self.rows[i + 1][0] * self.rows[0][j + 1] / scale;
         [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
     }
 

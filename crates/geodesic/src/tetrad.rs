@@ -25,7 +25,9 @@ impl std::fmt::Display for TetradError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NoForward => write!(f, "the forward direction has length zero or is not finite"),
-            Self::NoUp => write!(f, "the up direction has length zero, is not finite, or is parallel to forward"),
+            Self::NoUp => {
+                write!(f, "the up direction has length zero, is not finite, or is parallel to forward")
+            }
         }
     }
 }
@@ -114,8 +116,12 @@ mod tests {
         .unwrap();
         let world_from_observer = tetrad.observer_from_world::<f64>().inverse();
         let leg = |t, x, y, z| world_from_observer * FourVector::new(t, x, y, z);
-        let legs =
-            [leg(1.0, 0.0, 0.0, 0.0), leg(0.0, 1.0, 0.0, 0.0), leg(0.0, 0.0, 1.0, 0.0), leg(0.0, 0.0, 0.0, 1.0)];
+        let legs = [
+            leg(1.0, 0.0, 0.0, 0.0),
+            leg(0.0, 1.0, 0.0, 0.0),
+            leg(0.0, 0.0, 1.0, 0.0),
+            leg(0.0, 0.0, 0.0, 1.0),
+        ];
         for i in 0..4 {
             for j in 0..4 {
                 let expected = if i != j { 0.0 } else { if i == 0 { -1.0 } else { 1.0 } };

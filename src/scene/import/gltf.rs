@@ -14,27 +14,43 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     let file = gltf::Gltf::from_slice(bytes).map_err(|e| fault(format!("{e}")))?;
     let required: Vec<&str> = file.extensions_required().filter(|e| !KNOWN_EXTENSIONS.contains(e)).collect();
     if !required.is_empty() {
-        return Err(fault(format!("it requires the extension {}, which is not supported", required.join(", "))));
+        return Err(fault(format!(
+            "it requires the extension {}, which is not supported",
+            required.join(", ")
+        )));
     }
     let buffers = file
         .buffers()
         .map(|buffer| {
             let contents = match buffer.source() {
-                gltf::buffer::Source::Bin => file.blob.clone().ok_or_else(|| fault("its binary chunk is missing".into()))?,
+                gltf::buffer::Source::Bin => {
+                    file.blob.clone().ok_or_else(|| fault("its binary chunk is missing".into()))?
+                }
                 gltf::buffer::Source::Uri(uri) => match uri.strip_prefix("data:") {
-                    Some(data) => base64(data).ok_or_else(|| fault("a data URI in it is not base64".into()))?,
+                    Some(data) => {
+                        base64(data).ok_or_else(|| fault("a data URI in it is not base64".into()))?
+                    }
                     None => read(&beside(path, Path::new(uri)))?,
                 },
             };
             if contents.len() < buffer.length() {
                 let (found, needed) = (contents.len(), buffer.length());
-                return Err(fault(format!("buffer {} has {found} of {needed} bytes; is the file whole?", buffer.index())));
+                return Err(fault(format!(
+                    "buffer {} has {found} of {needed} bytes; is the file whole?",
+                    buffer.index()
+                )));
             }
             Ok(contents)
         })
         .collect::<Result<Vec<_>, _>>()?;
 
-    let mut reader = Reader { buffers, mesh: Mesh::default(), notes: Vec::new(), colored: false, visited: vec![false; file.nodes().len()] };
+    let mut reader = Reader {
+        buffers,
+        mesh: Mesh::default(),
+        notes: Vec::new(),
+        colored: false,
+        visited: vec![false; file.nodes().len()],
+    };
     let scene = file.default_scene().or_else(|| file.scenes().next());
     match scene {
         Some(scene) => {
@@ -57,12 +73,17 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
 }
 
 /// Extensions a file may require that change nothing we read, or that the reader knows.
-const KNOWN_EXTENSIONS: [&str; 4] =
-    ["KHR_materials_unlit", "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_texture_transform"];
+const KNOWN_EXTENSIONS: [&str; 4] = [
+    "KHR_materials_unlit",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_texture_transform",
+];
 
 /// The lengths in a GLB's header against the bytes there are.
 fn check_glb(bytes: &[u8]) -> Result<(), String> {
-    let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
+    let word =
+        |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
     let (Some(version), Some(length), Some(json)) = (word(4), word(8), word(12)) else {
         return Err(format!("the file ends after {} bytes, within its header", bytes.len()));
     };
@@ -137,7 +158,11 @@ impl Reader {
         Ok(())
     }
 
-    fn primitive(&mut self, mesh: &gltf::Mesh<'_>, primitive: &gltf::Primitive<'_>) -> Result<Option<Mesh>, String> {
+    fn primitive(
+        &mut self,
+        mesh: &gltf::Mesh<'_>,
+        primitive: &gltf::Primitive<'_>,
+    ) -> Result<Option<Mesh>, String> {
         if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
             self.notes.push(format!("points and lines of mesh {} are not drawn", mesh.index()));
             return Ok(None);
@@ -160,7 +185,9 @@ impl Reader {
         };
         let triangles: Vec<[u32; 3]> = match primitive.mode() {
             Mode::TriangleStrip => {
-                let turned = |(i, t): (usize, &[u32])| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
+                let turned = |(i, t): (usize, &[u32])| {
+                    if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }
+                };
                 indices.windows(3).enumerate().map(turned).collect()
             }
             Mode::TriangleFan => {
@@ -171,7 +198,9 @@ impl Reader {
         let material = primitive.material();
         let [r, g, b, _] = material.pbr_metallic_roughness().base_color_factor();
         let paint = match reader.read_colors(0) {
-            Some(colors) => Paint::Vertices(colors.into_rgb_f32().map(|c| [c[0] * r, c[1] * g, c[2] * b]).collect()),
+            Some(colors) => {
+                Paint::Vertices(colors.into_rgb_f32().map(|c| [c[0] * r, c[1] * g, c[2] * b]).collect())
+            }
             None => Paint::Uniform([r, g, b]),
         };
         self.colored |= material.index().is_some() || matches!(paint, Paint::Vertices(_));
@@ -209,7 +238,11 @@ impl Reader {
             good &= fits(&indices.view(), indices.offset(), sparse.count(), indices.index_type().size());
             good &= fits(&sparse.values().view(), sparse.values().offset(), sparse.count(), accessor.size());
         }
-        if good { Ok(()) } else { Err(format!("accessor {} reaches beyond its buffer; is the file whole?", accessor.index())) }
+        if good {
+            Ok(())
+        } else {
+            Err(format!("accessor {} reaches beyond its buffer; is the file whole?", accessor.index()))
+        }
     }
 }
 
@@ -282,7 +315,14 @@ mod tests {
             }
             bytes
         };
-        for bytes in [b"glTF".to_vec(), glb(2, 4_000_000_000, 10), glb(2, 20, 4_000_000_000), glb(2, 3, 0), glb(1, 20, 0), glb(2, 20, 0)] {
+        for bytes in [
+            b"glTF".to_vec(),
+            glb(2, 4_000_000_000, 10),
+            glb(2, 20, 4_000_000_000),
+            glb(2, 3, 0),
+            glb(1, 20, 0),
+            glb(2, 20, 0),
+        ] {
             assert!(parse(&bytes, Path::new("a.glb"), &|_| Ok(vec![])).is_err());
         }
     }

@@ -7,10 +7,15 @@ use std::path::Path;
 /// order, polygons cut into fans.
 pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imported, ImportError> {
     let fault = |line, message: String| ImportError::Contents { path: path.to_owned(), line, message };
-    let text = std::str::from_utf8(bytes)
-        .map_err(|e| fault(Some(1 + bytes[..e.valid_up_to()].iter().filter(|&&b| b == b'\n').count()), "this is not text, so no OBJ file".into()))?;
+    let text = std::str::from_utf8(bytes).map_err(|e| {
+        fault(
+            Some(1 + bytes[..e.valid_up_to()].iter().filter(|&&b| b == b'\n').count()),
+            "this is not text, so no OBJ file".into(),
+        )
+    })?;
     let notes = RefCell::new(Vec::new());
-    let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
+    let options =
+        tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let load_materials = |library: &Path| {
         let library = beside(path, library);
         match read(&library) {
@@ -21,12 +26,11 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
             }
         }
     };
-    let (models, materials) = tobj::load_obj_buf(&mut { bytes }, &options, load_materials)
-        .map_err(|e| {
-            let line = faulty_line(text);
-            let what = line.and_then(|l| text.lines().nth(l - 1)).map(|l| format!(" in '{}'", l.trim()));
-            fault(line, format!("{e}{}", what.unwrap_or_default()))
-        })?;
+    let (models, materials) = tobj::load_obj_buf(&mut { bytes }, &options, load_materials).map_err(|e| {
+        let line = faulty_line(text);
+        let what = line.and_then(|l| text.lines().nth(l - 1)).map(|l| format!(" in '{}'", l.trim()));
+        fault(line, format!("{e}{}", what.unwrap_or_default()))
+    })?;
     let materials = materials.unwrap_or_else(|e| {
         if e != tobj::LoadError::OpenFileFailed {
             notes.borrow_mut().push(format!("no material colours: the material library is malformed ({e})"));
@@ -102,7 +106,8 @@ mod tests {
     use super::super::import_obj;
     use super::*;
 
-    const SQUARE: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red\nf 1 2 3 4\nusemtl none\nf -4 -3 -2\n";
+    const SQUARE: &str =
+        "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red\nf 1 2 3 4\nusemtl none\nf -4 -3 -2\n";
 
     #[test]
     fn triangles_are_numbered_as_in_the_file_and_coloured_by_their_material() {
@@ -130,7 +135,8 @@ mod tests {
 
     #[test]
     fn nothing_to_draw_is_an_error() {
-        for text in ["", "# empty\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"] {
+        for text in ["", "# empty\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"]
+        {
             assert!(import_obj(text, "", "bad.obj").is_err(), "{text:?}");
         }
         assert!(parse(&[0xff, 0xfe, 0x00], Path::new("bad.obj"), &|_| Ok(vec![])).is_err());
