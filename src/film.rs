@@ -37,6 +37,22 @@ impl Film {
         }
     }
 
+    /// Takes off everything, and takes the given size; what memory there is stays.
+    pub fn clear(&mut self, width: u32, height: u32) {
+        (self.width, self.height) = (width, height);
+        let pixels = width as usize * height as usize;
+        self.color.clear();
+        self.color.resize(pixels, [0.0; 3]);
+        for values in [&mut self.distance, &mut self.doppler] {
+            values.clear();
+            values.resize(pixels, 0.0);
+        }
+        for indices in [&mut self.body, &mut self.face] {
+            indices.clear();
+            indices.resize(pixels, NOTHING);
+        }
+    }
+
     /// How many pixels see something.
     pub fn covered(&self) -> usize {
         self.body.iter().filter(|&&b| b != NOTHING).count()

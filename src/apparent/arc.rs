@@ -49,8 +49,10 @@ impl Arc {
         let normal = from.cross(to);
         let area = normal.length();
         let (start, end) = (from.length(), to.length());
-        // An angle of this few radians cannot be told from rounding noise of its ends.
-        if !(area > 4.0 * f64::EPSILON * start * end) {
+        // An angle of this few radians cannot be told from rounding noise of its ends, nor the direction of an end
+        // this much nearer than the other.
+        if area <= 4.0 * f64::EPSILON * start * end || start.min(end) <= 64.0 * f64::EPSILON * start.max(end)
+        {
             return None;
         }
         let normal = normal / area;
@@ -273,7 +275,7 @@ impl Arc {
             left = right;
         }
         let total = below[panels];
-        if !(total > 1.0) {
+        if total.is_nan() || total <= 1.0 {
             return Cuts { chi: Vec::new(), total };
         }
         let pieces = total.ceil().min(MOST_CUTS as f64 + 2.0) as usize;

@@ -43,8 +43,12 @@ pub struct TooManyPieces {
     pub most: usize,
 }
 
+/// Halvings of a triangle; 2⁸⁰ pieces are never needed, but a triangle within rounding noise of the observer
+/// would go on for ever.
+const DEEPEST: u32 = 80;
+
 /// Triangles a task works on at once.
-const CHUNK: usize = 2048;
+const CHUNK: usize = 256;
 
 impl ApparentMesh {
     /// The mesh as it is seen, without cutting anything: right only for triangles that look small.
@@ -220,7 +224,8 @@ impl Cutter<'_> {
             self.out.triangles.push(ApparentTriangle { corners: indices, face: face as u32, piece: WHOLE });
             return self.count(1);
         }
-        if self.misses_picture(&offsets) {
+        // Edge-on, or out of the picture.
+        if offsets[0].dot(offsets[1].cross(offsets[2])) == 0.0 || self.misses_picture(&offsets) {
             return Some(());
         }
         let weights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
@@ -339,7 +344,7 @@ impl Cutter<'_> {
         let most = (0..3)
             .filter(|&i| sides[i].pieces > 1)
             .max_by(|&i, &j| sides[i].extent().total_cmp(&sides[j].extent()));
-        let Some(most) = most else { return self.leaf(face, corners, depth) };
+        let Some(most) = most.filter(|_| depth < DEEPEST) else { return self.leaf(face, corners, depth) };
         let pieces = sides[most].pieces;
         if pieces > 2 && depth % 2 == 1 && self.misses_picture(&corners.map(|c| self.map.offset_rest(c.rest)))
         {
@@ -361,7 +366,6 @@ impl Cutter<'_> {
     /// A triangle whose three sides look straight, unless it bulges between them: then it gets a corner in its
     /// middle.
     fn leaf(&mut self, face: u32, corners: [Corner; 3], depth: u32) -> Option<()> {
-        const DEEPEST: u32 = 60;
         if depth < DEEPEST && self.bulges(&corners) {
             let [a, b, c] = corners;
             let weights = [0, 1].map(|i| (a.weights[i] + b.weights[i] + c.weights[i]) / 3.0);

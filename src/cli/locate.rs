@@ -51,7 +51,7 @@ impl Locate {
         let map = ApparentMap::new(&motion, &Tetrad::of_world(self.observer));
         let mut out = BufWriter::new(std::io::stdout().lock());
         if self.points.is_empty() {
-            self.from_csv(&map, &mut out)?;
+            self.rows_of_csv(&map, &mut out)?;
         } else {
             writeln!(out, "{HEADER}")?;
             for &point in &self.points {
@@ -61,7 +61,7 @@ impl Locate {
         Ok(out.flush()?)
     }
 
-    fn from_csv(&self, map: &ApparentMap, out: &mut impl Write) -> Result<(), Fault> {
+    fn rows_of_csv(&self, map: &ApparentMap, out: &mut impl Write) -> Result<(), Fault> {
         let mut lines = std::io::stdin().lock().lines().enumerate();
         let (_, header) =
             lines.next().ok_or("standard input is empty; CSV with the header x,y,z is needed")?;

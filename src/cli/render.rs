@@ -87,7 +87,7 @@ enum ColorFlag {
 impl Render {
     pub fn run(self) -> Result<(), Fault> {
         let start = Instant::now();
-        if !(self.tolerance > 0.0) {
+        if self.tolerance <= 0.0 {
             return Err(format!("--tolerance {} is not above 0 px", self.tolerance).into());
         }
         let scene = self.scene()?;

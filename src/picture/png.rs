@@ -7,8 +7,8 @@ pub fn pixels_srgb(film: &Film) -> Vec<u8> {
 }
 
 fn encode(linear: f32) -> u8 {
-    // NaN is black.
-    let v = linear.max(0.0).min(1.0);
+    // A cast of NaN is 0: black.
+    let v = linear.clamp(0.0, 1.0);
     let encoded = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
     (255.0 * encoded + 0.5) as u8
 }

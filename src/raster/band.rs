@@ -1,7 +1,9 @@
 use super::bins::{Binned, Bins};
-use super::triangle::{Linear, Planes, owns_boundary};
+use super::triangle::{HalfPlane, Linear, Planes, owns_boundary};
 use super::{BAND, Drawable, Samples};
+use crate::apparent::ApparentTriangle;
 use crate::color::Coloring;
+use crate::relativity::DopplerSky;
 use crate::scene::{Lens, Projection};
 use glam::{DVec2, DVec3};
 
@@ -26,6 +28,9 @@ pub(super) struct Band {
 }
 
 const NONE: u32 = u32::MAX;
+
+/// Triangles of so few columns are tested pixel by pixel.
+const NARROW: u32 = 4;
 
 /// Rows and columns of a rectangle within the band.
 struct Window {
@@ -93,66 +98,50 @@ impl Band {
         }
     }
 
-    /// Row by row: each edge function is linear in x, so that what it admits is a half-line whose end is
-    /// guessed by division and settled by the function itself.
+    /// Row by row: what three half-planes have in common is a run of pixels.
     fn fill_pinhole(&mut self, planes: &Planes, lens: &Lens, offset: DVec2, triangle: u32, window: &Window) {
-        let (width, height, focal) = (f64::from(lens.width()), f64::from(lens.height()), lens.focal().x);
-        let linear = |m: DVec3| Linear::of_pinhole(m, width, height, focal);
-        let edges = planes.edges.map(linear);
-        let owns = planes.edges.map(owns_boundary);
-        let nearness = linear(planes.nearness);
+        let (middle, inverse_focal) = (lens.middle(), 1.0 / lens.focal().x);
+        let edges = planes.edges.map(|m| HalfPlane::new(m, middle, inverse_focal));
+        let nearness = Linear::of_pinhole(planes.nearness, middle, inverse_focal);
+        let narrow = window.x[1] - window.x[0] <= NARROW;
         for y in window.y[0]..window.y[1] {
             let at_y = f64::from(y) + offset.y;
             let base = (y - window.top) as usize * window.width;
-            let [mut from, mut to] = window.x;
-            for (edge, owns) in edges.iter().zip(owns) {
-                let row = edge.row(at_y);
-                let inside = |x: u32| {
-                    let e = edge.a * (f64::from(x) + offset.x) + row;
-                    e > 0.0 || (owns && e == 0.0)
-                };
-                if from >= to {
-                    break;
+            let rows = edges.map(|edge| edge.row(at_y));
+            let near_row = nearness.row(at_y);
+            if narrow {
+                for x in window.x[0]..window.x[1] {
+                    let at_x = f64::from(x) + offset.x;
+                    if (0..3).all(|i| edges[i].holds(rows[i], at_x)) {
+                        self.put(base + x as usize, (nearness.a * at_x + near_row) as f32, triangle);
+                    }
                 }
-                if edge.a == 0.0 {
-                    if !inside(from) {
-                        to = from;
-                    }
-                    continue;
-                }
-                let crossing = (-row / edge.a - offset.x).clamp(f64::from(from) - 1.0, f64::from(to) + 1.0);
-                if edge.a > 0.0 {
-                    let mut first = crossing.ceil().max(f64::from(from)) as u32;
-                    while first > from && inside(first - 1) {
-                        first -= 1;
-                    }
-                    while first < to && !inside(first) {
-                        first += 1;
-                    }
-                    from = first;
-                } else {
-                    let mut end = (crossing.floor() + 1.0).clamp(f64::from(from), f64::from(to)) as u32;
-                    while end < to && inside(end) {
-                        end += 1;
-                    }
-                    while end > from && !inside(end - 1) {
-                        end -= 1;
-                    }
-                    to = end;
-                }
+                continue;
             }
+            let mut run = window.x;
+            for i in 0..3 {
+                run = edges[i].clip(rows[i], offset.x, run);
+            }
+            let [from, to] = run;
             if from < to {
-                let start = nearness.a * (f64::from(from) + offset.x) + nearness.row(at_y);
+                let start = nearness.a * (f64::from(from) + offset.x) + near_row;
                 let span = base + from as usize..base + to as usize;
                 let depths = self.nearness[span.clone()].iter_mut().zip(&mut self.triangle[span]);
                 for (i, (depth, id)) in depths.enumerate() {
                     let here = (start + nearness.a * i as f64) as f32;
-                    if here > *depth {
-                        *depth = here;
-                        *id = triangle;
-                    }
+                    let nearer = here > *depth;
+                    *depth = if nearer { here } else { *depth };
+                    *id = if nearer { triangle } else { *id };
                 }
             }
+        }
+    }
+
+    #[inline]
+    fn put(&mut self, at: usize, nearness: f32, triangle: u32) {
+        if nearness > self.nearness[at] {
+            self.nearness[at] = nearness;
+            self.triangle[at] = triangle;
         }
     }
 
@@ -167,11 +156,7 @@ impl Band {
                     e > 0.0 || (owns[i] && e == 0.0)
                 };
                 if inside(0) && inside(1) && inside(2) {
-                    let here = planes.nearness.dot(n) as f32;
-                    if here > self.nearness[at] {
-                        self.nearness[at] = here;
-                        self.triangle[at] = triangle;
-                    }
+                    self.put(at, planes.nearness.dot(n) as f32, triangle);
                 }
             }
         }
@@ -192,43 +177,50 @@ impl Band {
         rows: &mut Rows<'_>,
     ) {
         let width = lens.width() as usize;
-        let mut last: Option<(u32, usize, usize, Planes)> = None;
-        for (i, &number) in self.triangle.iter().enumerate() {
-            if number == NONE {
-                continue;
-            }
-            let direction = match self.directions.get(i) {
-                Some(n) => *n,
-                None => lens.direction(pixel(i, width, top) + offset).unwrap_or(DVec3::Z),
-            };
-            if last.is_none_or(|(n, ..)| n != number) {
-                let (body, triangle) = bins.locate(number);
-                let seen = bodies[body].seen;
-                let corners = seen.triangles[triangle].corners.map(|v| seen.vertices[v as usize]);
-                last = Planes::new(corners).map(|planes| (number, body, triangle, planes));
-            }
-            let Some((_, body, triangle, planes)) = &last else { continue };
-            let Drawable { body: body_index, mesh, map, seen } = bodies[*body];
-            let piece = seen.triangles[*triangle];
-            let face = piece.face as usize;
+        let skies: Vec<DopplerSky> = bodies.iter().map(|b| b.map.doppler_sky()).collect();
+        let mut last: Option<(u32, usize, ApparentTriangle, Planes)> = None;
+        for (line, numbers) in self.triangle.chunks(width).enumerate() {
+            for (x, &number) in numbers.iter().enumerate() {
+                if number == NONE {
+                    continue;
+                }
+                let i = line * width + x;
+                let direction = match self.directions.get(i) {
+                    Some(n) => *n,
+                    None => {
+                        let corner = DVec2::new(x as f64, f64::from(top) + line as f64);
+                        lens.direction(corner + offset).unwrap_or(DVec3::Z)
+                    }
+                };
+                if last.is_none_or(|(n, ..)| n != number) {
+                    let (body, triangle) = bins.locate(number);
+                    let seen = bodies[body].seen;
+                    let triangle = seen.triangles[triangle];
+                    let corners = triangle.corners.map(|v| seen.vertices[v as usize]);
+                    last = Planes::new(corners).map(|planes| (number, body, triangle, planes));
+                }
+                let Some((_, body, piece, planes)) = &last else { continue };
+                let Drawable { body: body_index, mesh, seen, .. } = bodies[*body];
+                let face = piece.face as usize;
 
-            let length = direction.length();
-            let doppler = map.doppler_towards(direction / length);
-            let own = if mesh.paint.is_of_faces() {
-                mesh.paint.at(face, [0; 3], [1.0; 3])
-            } else {
-                let e = planes.edges.map(|m| m.dot(direction));
-                let sum = e[0] + e[1] + e[2];
-                mesh.paint.at(face, mesh.triangles[face], seen.rest_weights(&piece, e.map(|e| e / sum)))
-            };
-            let light = coloring.light(own, doppler);
-            let color = &mut rows.color[i];
-            *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
-            if centre {
-                rows.distance[i] = (length / planes.nearness.dot(direction)) as f32;
-                rows.doppler[i] = doppler as f32;
-                rows.body[i] = body_index as i32;
-                rows.face[i] = face as i32;
+                let length = direction.length();
+                let doppler = skies[*body].towards(direction, length);
+                let own = if mesh.paint.is_of_faces() {
+                    mesh.paint.at(face, [0; 3], [1.0; 3])
+                } else {
+                    let e = planes.edges.map(|m| m.dot(direction));
+                    let sum = e[0] + e[1] + e[2];
+                    mesh.paint.at(face, mesh.triangles[face], seen.rest_weights(piece, e.map(|e| e / sum)))
+                };
+                let light = coloring.light(own, doppler);
+                let color = &mut rows.color[i];
+                *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
+                if centre {
+                    rows.distance[i] = (length / planes.nearness.dot(direction)) as f32;
+                    rows.doppler[i] = doppler as f32;
+                    rows.body[i] = body_index as i32;
+                    rows.face[i] = face as i32;
+                }
             }
         }
     }

@@ -61,8 +61,9 @@ impl<'a> Bounder<'a> {
     fn rect(&self, x: [f64; 2], y: [f64; 2]) -> Option<Rect> {
         let [low, high] = self.samples;
         let pixels = |range: [f64; 2], low: f64, high: f64, side: u32| {
-            let from = (range[0] - SLACK_PX - high).ceil().clamp(0.0, f64::from(side)) as u32;
-            let to = (range[1] + SLACK_PX - low + 1.0).floor().clamp(0.0, f64::from(side)) as u32;
+            // Casts truncate; where that differs from rounding up, the slack covers it.
+            let from = (range[0] - SLACK_PX - high + 1.0).clamp(0.0, f64::from(side)) as u32;
+            let to = (range[1] + SLACK_PX - low + 1.0).clamp(0.0, f64::from(side)) as u32;
             (from < to).then_some([from, to])
         };
         Some(Rect {
@@ -78,7 +79,7 @@ impl<'a> Bounder<'a> {
             return [self.everything(), None];
         }
         let focal = self.lens.focal();
-        let middle = 0.5 * DVec2::new(f64::from(self.lens.width()), f64::from(self.lens.height()));
+        let middle = self.lens.middle();
         let (near, far) = ((theta - half).max(0.0), theta + half);
         // Azimuth, y down.
         let azimuth = (-axis.y).atan2(axis.x);

@@ -61,9 +61,26 @@ impl Samples {
 /// Rows drawn as one task.
 const BAND: u32 = 16;
 
-/// Draws apparent meshes.
+/// Draws apparent meshes on a new film.
 pub fn shade(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, coloring: Coloring) -> Film {
     let mut film = Film::new(lens.width(), lens.height());
+    draw(bodies, lens, samples, coloring, &mut film);
+    film
+}
+
+/// As [`shade`], on a film used before: for animations, since new memory costs as much as a simple picture.
+pub fn shade_again(
+    bodies: &[Drawable<'_>],
+    lens: &Lens,
+    samples: &Samples,
+    coloring: Coloring,
+    film: &mut Film,
+) {
+    film.clear(lens.width(), lens.height());
+    draw(bodies, lens, samples, coloring, film);
+}
+
+fn draw(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, coloring: Coloring, film: &mut Film) {
     let bins = bins::Bins::new(bodies, lens, samples);
     let pixels = lens.width() as usize * BAND as usize;
     film.color
@@ -77,5 +94,190 @@ pub fn shade(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, coloring: 
             let out = band::Rows { color, distance, doppler, body, face };
             band.draw(bodies, &bins, lens, samples, coloring, index as u32 * BAND, out);
         });
-    film
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::NOTHING;
+    use crate::relativity::Motion;
+    use crate::scene::{Paint, Projection};
+    use glam::{DVec2, DVec3};
+    use proptest::prelude::*;
+    use terrell_geodesic::{Event, Tetrad};
+
+    fn lens(which: usize) -> Lens {
+        let (projection, fov) = [
+            (Projection::Pinhole, 60.0),
+            (Projection::Pinhole, 150.0),
+            (Projection::Fisheye, 180.0),
+            (Projection::Fisheye, 360.0),
+            (Projection::Panorama, 360.0),
+        ][which];
+        Lens::new(projection, fov, 61, 43).unwrap()
+    }
+
+    /// A body at rest, in the camera's axes: what is drawn is what is there.
+    fn draw_at_rest(mesh: &Mesh, lens: &Lens, samples: u32) -> Film {
+        let observer = Tetrad::of_world(Event::origin());
+        let map = ApparentMap::new(&Motion::at_rest(DVec3::ZERO), &observer);
+        let seen = ApparentMesh::linear(mesh, &map);
+        shade(
+            &[Drawable { body: 3, mesh, map: &map, seen: &seen }],
+            lens,
+            &Samples::new(samples),
+            Coloring::Geometry,
+        )
+    }
+
+    /// Every pixel against every triangle (Möller and Trumbore 1997), with how surely it hits or misses.
+    fn cast(mesh: &Mesh, direction: DVec3) -> (Option<(f64, usize)>, bool) {
+        let mut nearest: Option<(f64, usize)> = None;
+        let mut clear = true;
+        for t in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(t);
+            let (ab, ac) = (b - a, c - a);
+            let p = direction.cross(ac);
+            let determinant = ab.dot(p);
+            let scale = ab.length() * ac.length() * direction.length();
+            if determinant.abs() < 1e-9 * scale {
+                clear = false;
+                continue;
+            }
+            let u = -a.dot(p) / determinant;
+            let q = (-a).cross(ab);
+            let v = direction.dot(q) / determinant;
+            let at = ac.dot(q) / determinant;
+            let margin = [u, v, 1.0 - u - v].into_iter().fold(f64::INFINITY, f64::min);
+            clear &= margin.abs() > 1e-9 && at.abs() > 1e-9;
+            if margin > 0.0 && at > 0.0 {
+                if let Some((other, _)) = nearest {
+                    clear &= (other / at - 1.0).abs() > 1e-5;
+                }
+                if nearest.is_none_or(|(other, _)| at < other) {
+                    nearest = Some((at, t));
+                }
+            }
+        }
+        (nearest, clear)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(200))]
+
+        /// Triangles anywhere (in front, behind, across the camera plane, around the camera, over the poles
+        /// and the seam) cover just the pixels whose rays hit them.
+        #[test]
+        fn what_is_drawn_is_what_rays_hit(
+            points in prop::collection::vec(prop::array::uniform3(-3.0..3.0f64), 3..12),
+            which in 0usize..5,
+        ) {
+            let vertices: Vec<DVec3> = points.into_iter().map(DVec3::from_array).collect();
+            let triangles = (2..vertices.len() as u32).map(|i| [i - 2, i - 1, i]).collect();
+            let mesh = Mesh::new(&vertices, triangles);
+            let lens = lens(which);
+            let film = draw_at_rest(&mesh, &lens, 1);
+            for i in 0..film.body.len() {
+                let pixel = DVec2::new((i % 61) as f64 + 0.5, (i / 61) as f64 + 0.5);
+                let Some(direction) = lens.direction(pixel) else {
+                    prop_assert_eq!(film.body[i], NOTHING);
+                    continue;
+                };
+                let (hit, clear) = cast(&mesh, direction);
+                if clear {
+                    prop_assert_eq!(film.face[i], hit.map_or(NOTHING, |(_, t)| t as i32), "{}", pixel);
+                    if let Some((at, _)) = hit {
+                        let distance = at * direction.length();
+                        prop_assert!((f64::from(film.distance[i]) / distance - 1.0).abs() < 1e-5);
+                        prop_assert_eq!(film.body[i], 3);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Cut any way into triangles, a surface around the camera covers every pixel once: no cracks, and (in
+    /// two colours by samples) nothing twice.
+    #[test]
+    fn shared_edges_neither_leak_nor_overlap() {
+        let mut ball = crate::scene::shapes::sphere(3);
+        // Vertices on the very directions of pixels, too.
+        for i in 0..ball.vertex_count() {
+            let v = (ball.vertex(i as u32) * 8.0).round() / 8.0;
+            (ball.x[i], ball.y[i], ball.z[i]) = (v.x, v.y, v.z);
+        }
+        for which in 0..5 {
+            for (width, height) in [(64, 64), (65, 33)] {
+                let lens = self::lens(which);
+                let fov = [60.0, 150.0, 180.0, 360.0, 360.0][which];
+                let lens = Lens::new(lens.projection(), fov, width, height).unwrap();
+                let film = draw_at_rest(&ball, &lens, 1);
+                let seen = (0..film.body.len()).filter(|&i| {
+                    let at = DVec2::new((i as u32 % width) as f64 + 0.5, (i as u32 / width) as f64 + 0.5);
+                    lens.direction(at).is_some()
+                });
+                for i in seen {
+                    assert_ne!(
+                        film.body[i],
+                        NOTHING,
+                        "{which}: a leak at {} {}",
+                        i as u32 % width,
+                        i as u32 / width
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_middle_sample_is_the_centre_and_samples_average() {
+        let samples = Samples::new(64);
+        assert_eq!(samples.0[0], [0.5, 0.5]);
+        assert!(samples.0.iter().flatten().all(|c| (0.0..1.0).contains(c)));
+        // Half the sky white: edge pixels are grey by what they cover.
+        let mut mesh = Mesh::new(
+            &[DVec3::new(0.013, -50.0, 1.0), DVec3::new(50.0, 0.0, 1.0), DVec3::new(0.013, 50.0, 1.0)],
+            vec![[0, 1, 2]],
+        );
+        mesh.paint = Paint::Uniform([1.0; 3]);
+        let lens = lens(0);
+        let film = draw_at_rest(&mesh, &lens, 256);
+        let edge = 30.5 + lens.focal().x * 0.013;
+        let at = 20 * 61 + edge.floor() as usize;
+        let covered = 1.0 - edge.fract();
+        assert!((f64::from(film.color[at][0]) - covered).abs() < 0.02, "{:?} {covered}", film.color[at]);
+        assert_eq!(film.color[at + 2], [1.0; 3]);
+    }
+
+    #[test]
+    fn nearer_bodies_hide_farther_ones_at_any_order() {
+        let wall = |z: f64| {
+            Mesh::new(
+                &[DVec3::new(-9.0, -9.0, z), DVec3::new(9.0, -9.0, z), DVec3::new(0.0, 9.0, z)],
+                vec![[0, 1, 2]],
+            )
+        };
+        let (near, far) = (wall(2.0), wall(3.0));
+        let observer = Tetrad::of_world(Event::origin());
+        let map = ApparentMap::new(&Motion::at_rest(DVec3::ZERO), &observer);
+        let [seen_near, seen_far] = [&near, &far].map(|m| ApparentMesh::linear(m, &map));
+        let near = Drawable { body: 0, mesh: &near, map: &map, seen: &seen_near };
+        let far = Drawable { body: 1, mesh: &far, map: &map, seen: &seen_far };
+        for order in [[near, far], [far, near]] {
+            let film = shade(&order, &lens(0), &Samples::new(1), Coloring::Geometry);
+            assert_eq!(film.body[21 * 61 + 30], 0);
+            assert_eq!(film.distance[21 * 61 + 30], 2.0);
+        }
+    }
+
+    #[test]
+    fn degenerate_triangles_draw_nothing() {
+        let mesh = Mesh::new(
+            &[DVec3::Z, DVec3::Z, DVec3::new(1.0, 0.0, 1.0), DVec3::ZERO, DVec3::new(2.0, 0.0, 2.0)],
+            vec![[0, 1, 2], [3, 0, 2], [0, 2, 4], [0, 0, 0]],
+        );
+        for which in 0..5 {
+            assert_eq!(draw_at_rest(&mesh, &lens(which), 1).covered(), 0);
+        }
+    }
 }

@@ -1,4 +1,4 @@
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A triangle as three planes through the observer: e = m·n for the pixel's direction n is positive inside
 /// all three, and the three e are the barycentric coordinates of the point hit, to a factor.
@@ -49,16 +49,79 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// m·n as a function of the pixel for a pinhole, n = ((x − w/2)/F, (h/2 − y)/F, 1).
+    /// m·n as a function of the pixel for a pinhole, n = ((x − X)/F, (Y − y)/F, 1) with (X, Y) the middle.
     #[inline]
-    pub fn of_pinhole(m: DVec3, width: f64, height: f64, focal: f64) -> Self {
-        let (a, b) = (m.x / focal, -m.y / focal);
-        Self { a, b, c: m.z - 0.5 * (a * width + b * height) }
+    pub fn of_pinhole(m: DVec3, middle: DVec2, inverse_focal: f64) -> Self {
+        let (a, b) = (m.x * inverse_focal, -m.y * inverse_focal);
+        Self { a, b, c: m.z - (a * middle.x + b * middle.y) }
     }
 
     /// B y + C.
     #[inline]
     pub fn row(&self, y: f64) -> f64 {
         self.b * y + self.c
+    }
+}
+
+/// The half-plane on the inner side of an edge, on the picture of a pinhole.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HalfPlane {
+    edge: Linear,
+    /// −1/A: where a row crosses the edge, roughly.
+    crossing: f64,
+    /// Whether the edge itself belongs to it.
+    closed: bool,
+}
+
+impl HalfPlane {
+    #[inline]
+    pub fn new(m: DVec3, middle: DVec2, inverse_focal: f64) -> Self {
+        let edge = Linear::of_pinhole(m, middle, inverse_focal);
+        Self { edge, crossing: -1.0 / edge.a, closed: owns_boundary(m) }
+    }
+
+    #[inline]
+    pub fn row(&self, y: f64) -> f64 {
+        self.edge.row(y)
+    }
+
+    /// Whether the sample at `x` of the row is inside.
+    #[inline]
+    pub fn holds(&self, row: f64, x: f64) -> bool {
+        let e = self.edge.a * x + row;
+        e > 0.0 || (self.closed && e == 0.0)
+    }
+
+    /// The pixels of `[from, to)` inside, their samples `offset` to the right of their left sides. The edge
+    /// function is monotonic along the row, so that they are a run; its end is guessed by the crossing and
+    /// settled by the function itself.
+    #[inline]
+    pub fn clip(&self, row: f64, offset: f64, [from, to]: [u32; 2]) -> [u32; 2] {
+        let inside = |x: u32| self.holds(row, f64::from(x) + offset);
+        // NaN, for an edge along the row, becomes the least.
+        let guess = (row * self.crossing - offset).max(f64::from(from)).min(f64::from(to)) as u32;
+        if self.edge.a > 0.0 {
+            let mut first = guess;
+            while first > from && inside(first - 1) {
+                first -= 1;
+            }
+            while first < to && !inside(first) {
+                first += 1;
+            }
+            [first, to]
+        } else if self.edge.a < 0.0 {
+            let mut end = guess;
+            while end < to && inside(end) {
+                end += 1;
+            }
+            while end > from && !inside(end - 1) {
+                end -= 1;
+            }
+            [from, end]
+        } else if from < to && inside(from) {
+            [from, to]
+        } else {
+            [from, from]
+        }
     }
 }

@@ -167,16 +167,15 @@ impl ApparentMap {
         (x_rest.into(), Sight::from_seen(&seen))
     }
 
-    /// D of whatever part of the body is seen in the direction `n` (unit, observer's axes):
-    /// 1/D = γ(1 + β·n) = ½[k(1 + c) + (1 − c)/k] with c the cosine between n and the motion, and 1 + c taken
-    /// from the sine where it cancels.
+    /// D of whatever part of the body is seen in the direction `n` (any length, observer's axes); see
+    /// [`DopplerSky`].
     pub fn doppler_towards(&self, n: DVec3) -> f64 {
-        let axis = self.axis_observer();
-        let c = n.dot(axis);
-        let square = n.cross(axis).length_squared();
-        let (plus, minus) =
-            if c < 0.0 { (square / (1.0 - c), 1.0 - c) } else { (1.0 + c, square / (1.0 + c)) };
-        2.0 / (self.f64.k * plus + self.f64.inverse_k * minus)
+        self.doppler_sky().towards(n, n.length())
+    }
+
+    /// The Doppler factor of this body over the observer's sky.
+    pub fn doppler_sky(&self) -> DopplerSky {
+        DopplerSky { axis: self.axis_observer(), k: self.f64.k, inverse_k: self.f64.inverse_k }
     }
 
     /// Maps points stored as separate x, y, z; output positions are in the observer's axes.
@@ -193,6 +192,31 @@ impl ApparentMap {
     /// As [`see_all`](Self::see_all) in the instructions every x86-64 has, to measure one against the other.
     pub fn see_all_base<R: MapLane>(&self, rest: Points<'_, R>, seen: PointsMut<'_, R>) {
         R::run(self, rest, seen, false);
+    }
+}
+
+/// D over the sky: for one body in uniform motion it depends on the direction alone,
+/// 1/D = γ(1 + β·n) = ½[k(1 + c) + (1 − c)/k], with c the cosine between n and the motion, and 1 + c taken from
+/// the sine where it cancels: good to 4·10⁻¹⁶ at every γ.
+#[derive(Clone, Copy, Debug)]
+pub struct DopplerSky {
+    axis: DVec3,
+    k: f64,
+    inverse_k: f64,
+}
+
+impl DopplerSky {
+    /// D of what is seen in the direction of `v`, whose length is `length` (observer's axes).
+    #[inline]
+    pub fn towards(&self, v: DVec3, length: f64) -> f64 {
+        let along = v.dot(self.axis);
+        let (plus, minus) = if along < 0.0 {
+            let minus = length - along;
+            (v.cross(self.axis).length_squared() / minus, minus)
+        } else {
+            (length + along, length - along)
+        };
+        2.0 * length / (self.k * plus + self.inverse_k * minus)
     }
 }
 

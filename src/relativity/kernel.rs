@@ -114,7 +114,7 @@ impl<R: Lane> Constants<R> {
     /// Whether the axis is +x to the last digit.
     fn is_aligned(&self) -> bool {
         let [x, y, z] = self.axis;
-        let zero = |r: R| r >= R::ZERO && r <= R::ZERO;
+        let zero = |r: R| r == R::ZERO;
         [x.low, y.high, y.low, z.high, z.low].into_iter().all(zero) && x.high > R::ZERO
     }
 }

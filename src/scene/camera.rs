@@ -104,7 +104,8 @@ impl Lens {
         self.focal
     }
 
-    fn middle(&self) -> DVec2 {
+    /// The picture's middle, in pixels.
+    pub fn middle(&self) -> DVec2 {
         0.5 * DVec2::new(f64::from(self.width), f64::from(self.height))
     }
 

@@ -208,8 +208,7 @@ impl Mesh {
         }
         for vertex in 0..count {
             let at = self.vertex(vertex as u32);
-            // NaN fails this comparison too.
-            if !(at.abs().max_element() < 1e100) || at.is_nan() {
+            if !at.is_finite() || at.abs().max_element() >= 1e100 {
                 let position = format!("{}, {}, {}", at.x, at.y, at.z);
                 return Err(MeshError::BadVertex { vertex, position });
             }

@@ -158,9 +158,9 @@ mod tests {
         // 0.6c then 0.8c at right angles: tan(angle) closed form gives 18.9246°.
         let first = Lorentz::<World, Rest>::boost(&Celerity::from_beta(DVec3::X * 0.6).unwrap());
         let second = Lorentz::<Observer, World>::boost(&Celerity::from_beta(DVec3::Y * 0.8).unwrap());
-        let (g1, g2) = (1.25, 5.0 / 3.0);
+        let (g1, g2) = (1.25f64, 5.0 / 3.0);
         // cos ε = (γ₁ + γ₂)/(1 + γ₁γ₂) for perpendicular boosts.
-        let expected = ((g1 + g2) / (1.0 + g1 * g2) as f64).acos();
+        let expected = ((g1 + g2) / (1.0 + g1 * g2)).acos();
         let angle = (second * first).rotation_angle();
         assert!((angle - expected).abs() < 1e-14);
         assert!((angle.to_degrees() - 18.9).abs() < 0.05);
