@@ -47,7 +47,7 @@ pub struct TooManyPieces {
 /// would go on for ever.
 const DEEPEST: u32 = 80;
 
-/// Triangles a task works on at once.
+/// The most triangles a task works on at once; few large ones are shared out singly.
 const CHUNK: usize = 256;
 
 impl ApparentMesh {
@@ -79,7 +79,8 @@ impl ApparentMesh {
         let made = AtomicUsize::new(0);
         let fault = TooManyPieces { tolerance: how.tolerance, most: how.most };
         let own = vertices.len() as u32;
-        let chunks: Vec<Chunk> = (0..mesh.triangles.len().div_ceil(CHUNK))
+        let size = (mesh.triangles.len() / 64).clamp(1, CHUNK);
+        let chunks: Vec<Chunk> = (0..mesh.triangles.len().div_ceil(size))
             .into_par_iter()
             .map(|chunk| {
                 let mut cutter = Cutter {
@@ -93,7 +94,7 @@ impl ApparentMesh {
                     own,
                     sides: Vec::new(),
                 };
-                let faces = chunk * CHUNK..((chunk + 1) * CHUNK).min(mesh.triangles.len());
+                let faces = chunk * size..((chunk + 1) * size).min(mesh.triangles.len());
                 faces.into_iter().try_for_each(|face| cutter.cut(face)).map(|()| cutter.out).ok_or(fault)
             })
             .collect::<Result<_, _>>()?;
@@ -232,6 +233,14 @@ impl Cutter<'_> {
         let corners = [0, 1, 2].map(|i| Corner { index: indices[i], rest: rest[i], weights: weights[i] });
         self.sides.clear();
         let sides = [0, 1, 2].map(|i| self.outer_side(corners[i], corners[(i + 1) % 3]));
+        // A triangle takes about as many pieces as its longest side times its shortest (of WARP tolerances each):
+        // what surely is too much is known before it fills the memory.
+        let extents = sides.map(Side::extent);
+        let least =
+            extents.into_iter().fold(f64::INFINITY, f64::min) * extents.into_iter().fold(0.0, f64::max);
+        if least / (8.0 * WARP) > self.how.most as f64 {
+            return None;
+        }
         self.split(face as u32, corners, sides, 0)
     }
 

@@ -25,7 +25,12 @@ pub fn write_exr(film: &Film, to: impl Write + Seek) -> std::io::Result<()> {
         .collect(),
     );
     let size = (film.width as usize, film.height as usize);
-    let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::default() };
+    // In order, so that equal films are equal files.
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        line_order: LineOrder::Increasing,
+        ..Encoding::default()
+    };
     let layer = Layer::new(size, LayerAttributes::default(), encoding, channels);
     Image::from_layer(layer).write().to_buffered(to).map_err(|e| match e {
         Error::Io(e) => e,

@@ -114,6 +114,9 @@ impl Celerity {
         if gamma < 1.0 {
             return Err(CelerityError::GammaBelowOne(gamma));
         }
+        if gamma > Self::LIMIT {
+            return Err(CelerityError::TooFast(gamma));
+        }
         let length = (Wide::difference(gamma, 1.0) * Wide::sum(gamma, 1.0)).sqrt();
         Self::new(DVec3::from_array(unit(direction)?.map(|c| (c * length).value())))
     }
@@ -123,7 +126,11 @@ impl Celerity {
     /// # Errors
     /// If the direction is zero, or anything is not finite or overflows (w > 710).
     pub fn from_rapidity(rapidity: f64, direction: DVec3) -> Result<Self, CelerityError> {
-        let length = Wide::from(rapidity.sinh());
+        let length = rapidity.sinh();
+        if length.abs() > Self::LIMIT {
+            return Err(CelerityError::TooFast(length.abs()));
+        }
+        let length = Wide::from(length);
         Self::new(DVec3::from_array(unit(direction)?.map(|c| (c * length).value())))
     }
 

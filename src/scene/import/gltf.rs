@@ -1,7 +1,8 @@
 use super::{ImportError, Imported, ReadFile, beside};
 use crate::scene::{Mesh, Paint};
 use glam::{DAffine3, DMat4};
-use gltf::mesh::Mode;
+use gltf::accessor::{DataType, Dimensions};
+use gltf::mesh::{Mode, Semantic};
 use std::path::Path;
 
 /// glTF 2.0 and GLB: the default scene's meshes with their node transforms, base colours, vertex colours and
@@ -11,7 +12,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     if bytes.starts_with(b"glTF") {
         check_glb(bytes).map_err(fault)?;
     }
-    let file = gltf::Gltf::from_slice(bytes).map_err(|e| fault(format!("{e}")))?;
+    let file = open(bytes).map_err(fault)?;
     let required: Vec<&str> = file.extensions_required().filter(|e| !KNOWN_EXTENSIONS.contains(e)).collect();
     if !required.is_empty() {
         return Err(fault(format!(
@@ -79,6 +80,20 @@ const KNOWN_EXTENSIONS: [&str; 4] = [
     "KHR_materials_emissive_strength",
     "KHR_texture_transform",
 ];
+
+/// Parses and validates; the validator underneath trusts one index, so that is looked at first.
+fn open(bytes: &[u8]) -> Result<gltf::Gltf, String> {
+    let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|e| e.to_string())?;
+    let json = unchecked.document.into_json();
+    let primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    for accessor in primitives.flat_map(|primitive| primitive.attributes.values()) {
+        if accessor.value() >= json.accessors.len() {
+            return Err(format!("there is no accessor {}", accessor.value()));
+        }
+    }
+    let document = gltf::Document::from_json(json).map_err(|e| e.to_string())?;
+    Ok(gltf::Gltf { document, blob: unchecked.blob })
+}
 
 /// The lengths in a GLB's header against the bytes there are.
 fn check_glb(bytes: &[u8]) -> Result<(), String> {
@@ -167,11 +182,11 @@ impl Reader {
             self.notes.push(format!("points and lines of mesh {} are not drawn", mesh.index()));
             return Ok(None);
         }
-        for (_, accessor) in primitive.attributes() {
-            self.check(&accessor)?;
+        for (semantic, accessor) in primitive.attributes() {
+            self.check(&accessor, &semantic.to_string(), allowed_types(&semantic))?;
         }
         if let Some(accessor) = primitive.indices() {
-            self.check(&accessor)?;
+            self.check(&accessor, "indices", &INDEX_TYPES)?;
         }
         let buffers = &self.buffers;
         let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
@@ -218,15 +233,29 @@ impl Reader {
         Ok(Some(out))
     }
 
-    /// The reader underneath trusts lengths; this does not.
-    fn check(&self, accessor: &gltf::Accessor<'_>) -> Result<(), String> {
+    /// The reader underneath trusts types and lengths; this does not.
+    fn check(
+        &self,
+        accessor: &gltf::Accessor<'_>,
+        what: &str,
+        types: &[(Dimensions, DataType)],
+    ) -> Result<(), String> {
+        let found = (accessor.dimensions(), accessor.data_type());
+        if !types.is_empty() && !types.contains(&found) {
+            let index = accessor.index();
+            return Err(format!(
+                "accessor {index} ({what}) holds {found:?}, which the format does not allow there"
+            ));
+        }
         let fits = |view: &gltf::buffer::View<'_>, offset: usize, count: usize, size: usize| {
             let stride = view.stride().unwrap_or(size);
-            let needed = count.checked_sub(1).map_or(Some(0), |n| n.checked_mul(stride)?.checked_add(size));
+            let needed = count.checked_sub(1).and_then(|n| n.checked_mul(stride)?.checked_add(size));
             let end = needed.and_then(|n| n.checked_add(offset));
             let in_view = end.is_some_and(|end| end <= view.length());
             let there = self.buffers.get(view.buffer().index()).map_or(0, Vec::len);
-            in_view && view.offset().checked_add(view.length()).is_some_and(|end| end <= there)
+            stride >= size
+                && in_view
+                && view.offset().checked_add(view.length()).is_some_and(|end| end <= there)
         };
         let mut good = match accessor.view() {
             Some(view) => fits(&view, accessor.offset(), accessor.count(), accessor.size()),
@@ -243,6 +272,24 @@ impl Reader {
         } else {
             Err(format!("accessor {} reaches beyond its buffer; is the file whole?", accessor.index()))
         }
+    }
+}
+
+const INDEX_TYPES: [(Dimensions, DataType); 3] = [
+    (Dimensions::Scalar, DataType::U8),
+    (Dimensions::Scalar, DataType::U16),
+    (Dimensions::Scalar, DataType::U32),
+];
+
+/// What glTF allows for the attributes that are read; empty for the others.
+fn allowed_types(semantic: &Semantic) -> &'static [(Dimensions, DataType)] {
+    use DataType::{F32, U8, U16};
+    use Dimensions::{Vec2, Vec3, Vec4};
+    match semantic {
+        Semantic::Positions | Semantic::Normals => &[(Vec3, F32)],
+        Semantic::TexCoords(_) => &[(Vec2, F32), (Vec2, U8), (Vec2, U16)],
+        Semantic::Colors(_) => &[(Vec3, F32), (Vec3, U8), (Vec3, U16), (Vec4, F32), (Vec4, U8), (Vec4, U16)],
+        _ => &[],
     }
 }
 

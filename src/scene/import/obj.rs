@@ -7,30 +7,35 @@ use std::path::Path;
 /// order, polygons cut into fans.
 pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imported, ImportError> {
     let fault = |line, message: String| ImportError::Contents { path: path.to_owned(), line, message };
-    let text = std::str::from_utf8(bytes).map_err(|e| {
-        fault(
-            Some(1 + bytes[..e.valid_up_to()].iter().filter(|&&b| b == b'\n').count()),
-            "this is not text, so no OBJ file".into(),
-        )
-    })?;
+    if let Some(at) = bytes.iter().position(|&b| b == 0) {
+        let line = 1 + bytes[..at].iter().filter(|&&b| b == b'\n').count();
+        return Err(fault(Some(line), "this is not text, so no OBJ file".into()));
+    }
+    // Names and comments may be in any encoding.
+    let text = &String::from_utf8_lossy(bytes);
+    // The parser underneath computes with indices before it checks them all.
+    if let Some(line) = faulty_line(text, bad_index) {
+        return Err(fault(Some(line), format!("an index that leads nowhere in '{}'", line_of(text, line))));
+    }
     let notes = RefCell::new(Vec::new());
     let options =
         tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let load_materials = |library: &Path| {
         let library = beside(path, library);
         match read(&library) {
-            Ok(bytes) => tobj::load_mtl_buf(&mut bytes.as_slice()),
+            Ok(bytes) => tobj::load_mtl_buf(&mut without_odd_colors(&bytes).as_bytes()),
             Err(e) => {
                 notes.borrow_mut().push(format!("no material colours: {e}"));
                 Err(tobj::LoadError::OpenFileFailed)
             }
         }
     };
-    let (models, materials) = tobj::load_obj_buf(&mut { bytes }, &options, load_materials).map_err(|e| {
-        let line = faulty_line(text);
-        let what = line.and_then(|l| text.lines().nth(l - 1)).map(|l| format!(" in '{}'", l.trim()));
-        fault(line, format!("{e}{}", what.unwrap_or_default()))
-    })?;
+    let (models, materials) =
+        tobj::load_obj_buf(&mut text.as_bytes(), &options, load_materials).map_err(|e| {
+            let line = faulty_line(text, bad_number);
+            let what = line.map(|l| format!(" in '{}'", line_of(text, l)));
+            fault(line, format!("{e}{}", what.unwrap_or_default()))
+        })?;
     let materials = materials.unwrap_or_else(|e| {
         if e != tobj::LoadError::OpenFileFailed {
             notes.borrow_mut().push(format!("no material colours: the material library is malformed ({e})"));
@@ -47,6 +52,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
             values.chunks_exact(3).map(|v| [v[0] as f32, v[1] as f32, v[2] as f32]).collect()
         };
         let material = source.material_id.and_then(|id| materials.get(id));
+        let count = source.positions.len() / 3;
         let diffuse = material.and_then(|m| m.diffuse);
         colored |= diffuse.is_some() || !source.vertex_color.is_empty();
         let paint = if source.vertex_color.is_empty() {
@@ -60,8 +66,13 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
             z: coordinate(2),
             triangles: source.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
             paint,
-            uv: source.texcoords.chunks_exact(2).map(|v| [v[0] as f32, v[1] as f32]).collect(),
-            normals: triples(&source.normals),
+            // Where only some corners have them, they cannot be told apart any more.
+            uv: if source.texcoords.len() / 2 == count {
+                source.texcoords.chunks_exact(2).map(|v| [v[0] as f32, v[1] as f32]).collect()
+            } else {
+                Vec::new()
+            },
+            normals: if source.normals.len() / 3 == count { triples(&source.normals) } else { Vec::new() },
             one_sided: Vec::new(),
         });
     }
@@ -73,32 +84,61 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     Ok(Imported { mesh, notes })
 }
 
-/// The first line (from 1) that cannot be right: numbers that are none, indices that lead nowhere.
-fn faulty_line(text: &str) -> Option<usize> {
-    let mut counts = [0i64; 3];
-    for (number, line) in text.lines().enumerate() {
+/// A material library without the lines the parser underneath would stumble over: colours that are not three
+/// numbers (MTL has others, `Kd spectral …`).
+fn without_odd_colors(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let good = |line: &&str| {
         let mut words = line.split_whitespace();
-        let keyword = words.next();
-        let wrong = match keyword {
-            Some("v" | "vt" | "vn") => {
-                let which = ["v", "vt", "vn"].iter().position(|k| keyword == Some(k)).unwrap_or(0);
-                counts[which] += 1;
-                let numbers: Vec<_> = words.map(str::parse::<f64>).collect();
-                numbers.iter().any(Result::is_err) || numbers.len() < [3, 1, 3][which]
-            }
-            Some("f") => words.any(|corner| {
-                corner.split('/').enumerate().any(|(which, index)| match index.parse::<i64>() {
-                    Ok(i) => which > 2 || i == 0 || i > counts[which] || -i > counts[which],
-                    Err(_) => !(index.is_empty() && which > 0),
-                })
-            }),
-            _ => false,
-        };
-        if wrong {
+        let is_color = words.next().is_some_and(|keyword| matches!(keyword, "Ka" | "Kd" | "Ks" | "Ke"));
+        !is_color || words.take(3).filter(|word| word.parse::<f64>().is_ok()).count() == 3
+    };
+    text.lines().filter(good).flat_map(|line| [line, "\n"]).collect()
+}
+
+fn line_of(text: &str, number: usize) -> &str {
+    text.lines().nth(number - 1).unwrap_or_default().trim()
+}
+
+/// Positions, texture coordinates and normals so far.
+type Counts = [u64; 3];
+
+/// The first line (from 1) of which `is_bad`, given its keyword, the rest, and the counts before it.
+fn faulty_line(text: &str, is_bad: fn(&str, &str, &Counts) -> bool) -> Option<usize> {
+    let mut counts = Counts::default();
+    for (number, line) in text.lines().enumerate() {
+        let line = line.trim_start();
+        let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        if is_bad(keyword, rest, &counts) {
             return Some(number + 1);
+        }
+        if let Some(which) = ["v", "vt", "vn"].iter().position(|k| keyword == *k) {
+            counts[which] += 1;
         }
     }
     None
+}
+
+/// Indices of a face count from 1, or backwards from −1.
+fn bad_index(keyword: &str, rest: &str, counts: &Counts) -> bool {
+    keyword == "f"
+        && rest.split_whitespace().any(|corner| {
+            corner.split('/').enumerate().any(|(which, index)| match index.parse::<i64>() {
+                Ok(i) => which > 2 || i == 0 || i.unsigned_abs() > counts[which],
+                Err(_) => !(index.is_empty() && which > 0),
+            })
+        })
+}
+
+fn bad_number(keyword: &str, rest: &str, _: &Counts) -> bool {
+    let needed = match keyword {
+        "v" | "vn" => 3,
+        "vt" => 1,
+        _ => return false,
+    };
+    let numbers = rest.split_whitespace().map(str::parse::<f64>);
+    let good = numbers.clone().filter(Result::is_ok).count();
+    good < needed || good < numbers.count()
 }
 
 #[cfg(test)]

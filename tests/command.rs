@@ -1,0 +1,444 @@
+//! The command as people use it: what it writes, what it says, and what it refuses.
+
+mod common;
+
+use assert_cmd::Command;
+use common::{cases, points, vec3};
+use std::path::Path;
+
+fn terrell(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("terrell").unwrap().current_dir(folder).args(arguments).assert()
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// Exit code 2, all the parts in the message, no file left behind that was not there.
+fn refused(folder: &Path, arguments: &[&str], parts: &[&str]) {
+    let files = || {
+        let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(|f| f.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let before = files();
+    let output = terrell(folder, arguments).code(2).get_output().clone();
+    let message = String::from_utf8(output.stderr).unwrap();
+    for part in parts {
+        assert!(message.contains(part), "{arguments:?} says\n{message}which lacks '{part}'");
+    }
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(!message.contains("panicked"), "{message}");
+    assert_eq!(files(), before, "{arguments:?} left something behind");
+}
+
+#[test]
+fn the_main_job_needs_no_file_and_no_flag() {
+    let folder = folder();
+    let output = terrell(folder.path(), &["render", "cube"]).success().get_output().clone();
+    let line = String::from_utf8(output.stdout).unwrap();
+    assert!(line.contains("cube.png") && line.contains("1280x720") && line.contains("2.2942"), "{line}");
+    assert_eq!(line.lines().count(), 1);
+    let picture = image::open(folder.path().join("cube.png")).unwrap().to_rgb8();
+    assert_eq!(picture.dimensions(), (1280, 720));
+    // Fig. 2: the trailing side is seen, yellow; the near side, green; the picture's corners are empty.
+    let count = |wanted: [u8; 3]| {
+        picture.pixels().filter(|p| p.0.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) < 3)).count()
+    };
+    assert!(count([249, 237, 89]) > 50_000, "yellow");
+    assert!(count([89, 231, 124]) > 20_000, "green");
+    assert_eq!(picture.get_pixel(5, 5).0, [0, 0, 0]);
+}
+
+#[test]
+fn scenes_are_listed_and_can_be_started_from() {
+    let folder = folder();
+    let list = terrell(folder.path(), &["scenes"]).success().get_output().stdout.clone();
+    let list = String::from_utf8(list).unwrap();
+    for name in ["cube", "gate", "lattice"] {
+        assert!(list.lines().any(|l| l.starts_with(name)));
+        let toml = terrell(folder.path(), &["scenes", name]).success().get_output().stdout.clone();
+        std::fs::write(folder.path().join("my.toml"), toml).unwrap();
+        let both: Vec<Vec<u8>> = [name, "my.toml"]
+            .iter()
+            .map(|scene| {
+                terrell(folder.path(), &["render", scene, "-o", "a.png", "--size", "80x60", "-q"])
+                    .success()
+                    .stdout("");
+                std::fs::read(folder.path().join("a.png")).unwrap()
+            })
+            .collect();
+        assert!(both[0] == both[1], "{name}: the same picture from its TOML");
+    }
+    refused(folder.path(), &["scenes", "cuve"], &["cube"]);
+}
+
+#[test]
+fn every_way_to_say_a_velocity_says_the_same() {
+    let folder = folder();
+    let draw = |flags: &[&str]| {
+        terrell(
+            folder.path(),
+            &[&["render", "cube", "-o", "a.exr", "--size", "96x64", "-q"], flags].concat(),
+        )
+        .success();
+        std::fs::read(folder.path().join("a.exr")).unwrap()
+    };
+    let usual = draw(&["--beta", "0.6"]);
+    for flags in [
+        &["--beta", "0.6,0,0"][..],
+        &["--celerity", "0.75"],
+        &["--celerity", "0.75,0,0"],
+        &["--gamma", "1.25"],
+        &["--gamma", "1.25", "--direction", "3,0,0"],
+        &["--beta=0.6", "--direction", "1,0,0"],
+    ] {
+        assert!(draw(flags) == usual, "{flags:?}");
+    }
+    assert!(draw(&["--beta", "-0.6"]) != usual);
+    assert!(draw(&["--beta", "-0.6"]) == draw(&["--beta", "0.6", "--direction", "-1,0,0"]));
+}
+
+#[test]
+fn a_picture_is_taken_when_asked() {
+    let folder = folder();
+    let json = |flags: &[&str]| -> serde_json::Value {
+        let base = ["render", "cube", "-o", "a.png", "--size", "96x64", "--json", "-"];
+        let output = terrell(folder.path(), &[&base, flags].concat()).success().get_output().stdout.clone();
+        serde_json::from_slice(&output).unwrap()
+    };
+    // Abreast at a distance of 3 at time −3: seen so at 0, at every speed.
+    for beta in ["0.1", "0.9", "0.999"] {
+        let time = json(&["--beta", beta, "--when", "nearest cube"])["camera"]["event"][0].as_f64().unwrap();
+        assert!(time.abs() < 1e-12, "{time}");
+    }
+    let later = json(&["--time", "2.5"]);
+    assert_eq!(later["camera"]["event"][0], 2.5);
+    assert_eq!(later["method"], "apparent");
+    assert!(later["seconds"]["whole"].as_f64().unwrap() > 0.0);
+    assert!(later["pieces"].as_u64().unwrap() >= 12);
+}
+
+#[test]
+fn the_users_mistakes_are_explained() {
+    let folder = folder();
+    let at = folder.path();
+    let write = |name: &str, contents: &[u8]| std::fs::write(at.join(name), contents).unwrap();
+    write("empty.obj", b"");
+    write("half.obj", b"v 0 0 0\nv 1 0 0\nv 0 1\n");
+    write("nan.obj", b"v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n");
+    write("index.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n");
+    write("binary.obj", &[0u8, 159, 146, 150]);
+    write("empty.glb", b"");
+    write("short.glb", b"glTF\x02\x00\x00\x00");
+    // A header claiming 10 GB does not fit 32 bits; this is what fits.
+    write("huge.glb", b"glTF\x02\x00\x00\x00\xff\xff\xff\xff\xf0\xff\xff\xffJSON{}");
+    write("huge.gltf", br#"{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 10000000000}]}"#);
+    write("bad.gltf", b"{");
+    write("key.toml", b"[[body]]\nmesh = \"cube\"\nvelocty = [0.5, 0, 0]\n");
+    write("fast.toml", b"[[body]]\nmesh = \"cube\"\nvelocity = [1, 0, 0]\n");
+    write("file", b"");
+
+    for (arguments, parts) in [
+        (&["render", "cube", "--beta", "1"][..], &["not below 1", "gamma"][..]),
+        (&["render", "cube", "--beta", "0.8,0.8,0"], &["not below 1"]),
+        (&["render", "cube", "--beta", "fast"], &["--beta", "fast"]),
+        (&["render", "cube", "--beta", "nan"], &["not finite"]),
+        (&["render", "cube", "--gamma", "0.5"], &["below 1"]),
+        (&["render", "cube", "--gamma", "1e300"], &["beyond"]),
+        (&["render", "cube", "--beta", "0.5", "--gamma", "2"], &["--gamma"]),
+        (&["render", "cube", "--direction", "1,0,0"], &["speed"]),
+        (&["render", "cube", "--beta", "0.5", "--direction", "0,0,0"], &["length zero"]),
+        (&["render", "cube", "--size", "0x100"], &["0x100"]),
+        (&["render", "cube", "--size", "99999x99999"], &["99999"]),
+        (&["render", "cube", "--size", "big"], &["big", "1280x720"]),
+        (&["render", "cube", "--fov", "200"], &["200", "fisheye"]),
+        (&["render", "cube", "--fov", "0"], &["0°"]),
+        (&["render", "cube", "--camera", "fishey"], &["fisheye"]),
+        (&["render", "cube", "--camera", "panorama", "--fov", "90"], &["360"]),
+        (&["render", "cube", "--tolerance", "0"], &["--tolerance"]),
+        (&["render", "cube", "--tolerance", "-1"], &["--tolerance"]),
+        (&["render", "cube", "--tolerance", "1e-12"], &["tolerance"]),
+        (&["render", "cube", "--samples", "0"], &["--samples"]),
+        (&["render", "cube", "--when", "now"], &["nearest BODY"]),
+        (&["render", "cube", "--when", "nearest dog"], &["dog", "'cube'"]),
+        (&["render", "cube", "--beta", "0", "--when", "nearest cube"], &["never seen to pass"]),
+        (&["render", "cube", "-o", "cube.gif"], &["'.gif'", ".png"]),
+        (&["render", "cube", "-o", "cube"], &["unknown picture format"]),
+        (&["render", "cube", "-o", "no/such/cube.png"], &["no/such"]),
+        (&["render", "cube", "-o", "file/cube.png"], &["file"]),
+        (&["render", "cube", "-o", "/proc/cube.png"], &["/proc/cube.png"]),
+        (&["render", "cube", "--json", "no/such.json"], &["no/such.json"]),
+        (&["render", "cub"], &["'cube'"]),
+        (&["render", "no.obj"], &["no.obj"]),
+        (&["render", "no.toml"], &["no.toml"]),
+        (&["render", "empty.obj"], &["empty.obj", "no triangles"]),
+        (&["render", "half.obj"], &["half.obj:3"]),
+        (&["render", "nan.obj"], &["nan.obj", "vertex 1"]),
+        (&["render", "index.obj"], &["index.obj:4"]),
+        (&["render", "binary.obj"], &["binary.obj", "not text"]),
+        (&["render", "empty.glb"], &["empty.glb"]),
+        (&["render", "short.glb"], &["short.glb"]),
+        (&["render", "huge.glb"], &["huge.glb", "whole"]),
+        (&["render", "huge.gltf"], &["huge.gltf"]),
+        (&["render", "bad.gltf"], &["bad.gltf"]),
+        (&["render", "key.toml"], &["key.toml:3", "'velocity'"]),
+        (&["render", "fast.toml"], &["fast.toml:3", "not below 1"]),
+        (&["render"], &["<SCENE>"]),
+        (&["rendr"], &["render"]),
+    ] {
+        refused(at, arguments, parts);
+    }
+}
+
+#[test]
+fn hostile_scenes_give_pictures() {
+    let folder = folder();
+    let write = |name: &str, contents: &str| std::fs::write(folder.path().join(name), contents).unwrap();
+    // Zero-area triangles, equal vertices, triangles through the camera, huge and tiny ones.
+    write(
+        "odd.obj",
+        "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 1 1 0\nv 1e9 1 -1e9\nv -1e9 0 1e9\nv 1e-30 0 1e-30\nf 1 1 1\nf 1 2 3\nf 1 2 4\nf 4 5 6\nf 2 7 4\n",
+    );
+    write(
+        "around.toml",
+        "[camera]\nposition = [0, 0, 0]\n[[body]]\nmesh = \"cube\"\nscale = 4\ncelerity = [1e6, 3, 0]\n",
+    );
+    write(
+        "on.toml",
+        "[camera]\nposition = [0.5, 0.5, 0.5]\n[[body]]\nmesh = \"cube\"\nvelocity = [0.99, 0, 0]\n",
+    );
+    write(
+        "edge.toml",
+        "[camera]\nposition = [0.5, 0, 0.5]\n[[body]]\nmesh = \"cube\"\nvelocity = [0.99, 0, 0]\n",
+    );
+    write(
+        "never.toml",
+        "[camera]\nposition = [0, 1e6, 0]\n[[body]]\nmesh = \"cube\"\nvelocity = [0.5, 0, 0]\n",
+    );
+    for scene in ["odd.obj", "around.toml", "on.toml", "edge.toml", "never.toml", "gate", "lattice"] {
+        for camera in ["pinhole", "fisheye", "panorama"] {
+            for gamma in ["1", "1.5", "1000", "1e9"] {
+                let arguments = [
+                    "render",
+                    scene,
+                    "-o",
+                    "a.png",
+                    "--size",
+                    "64x48",
+                    "--camera",
+                    camera,
+                    "--gamma",
+                    gamma,
+                    "--tolerance",
+                    "1",
+                ];
+                let output = terrell(folder.path(), &arguments).success().get_output().clone();
+                let line = String::from_utf8(output.stdout).unwrap();
+                if scene == "never.toml" && camera != "panorama" && gamma == "1" {
+                    assert!(line.contains("nothing is in the picture"), "{line}");
+                }
+            }
+        }
+    }
+}
+
+fn csv(output: &[u8]) -> Vec<Vec<Option<f64>>> {
+    let text = String::from_utf8(output.to_vec()).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(
+        lines.next().unwrap(),
+        "x,y,z,apparent_x,apparent_y,apparent_z,distance,doppler,cos_theta_rest,cos_theta_observer,emission_time"
+    );
+    lines
+        .map(|line| {
+            line.split(',')
+                .map(|field| if field.is_empty() { None } else { Some(field.parse().unwrap()) })
+                .collect()
+        })
+        .collect()
+}
+
+fn list(values: &serde_json::Value) -> String {
+    let numbers: Vec<String> =
+        values.as_array().unwrap().iter().map(|v| format!("{:?}", v.as_f64().unwrap())).collect();
+    numbers.join(",")
+}
+
+/// The face by which others check us: every reference point, as an argument and as CSV, there and back.
+#[test]
+fn locate_agrees_with_the_references() {
+    let folder = folder();
+    let all: Vec<_> =
+        points().into_iter().chain(cases()["points"].as_array().unwrap().iter().cloned()).collect();
+    for row in all.iter().step_by(3) {
+        let base = [
+            "locate",
+            "--celerity",
+            &list(&row["u"]),
+            "--offset",
+            &list(&row["A"]),
+            "--observer",
+            &list(&row["O"]),
+        ];
+        let output = terrell(folder.path(), &[&base[..], &[&list(&row["x_rest"])]].concat())
+            .success()
+            .get_output()
+            .stdout
+            .clone();
+        let fields = csv(&output).remove(0);
+        let number = |i: usize| fields[i].unwrap();
+        let r = row["r"].as_f64().unwrap();
+        let condition = row["condition"]
+            .as_f64()
+            .or(row["cond_1ulp"].as_f64().map(|c| c / f64::EPSILON))
+            .unwrap()
+            .max(1.0);
+        let apparent = glam::DVec3::new(number(3), number(4), number(5));
+        assert!((apparent - vec3(&row["apparent"])).length() <= 5e-16 * condition * r);
+        assert!((number(6) / r - 1.0).abs() <= 5e-16 * condition);
+        assert!((number(7) / row["D"].as_f64().unwrap() - 1.0).abs() <= 1e-15 * condition);
+        let observer_time = row["O"][0].as_f64().unwrap();
+        assert!((number(10) - (observer_time - r)).abs() <= 1e-15 * (r + observer_time.abs()) * condition);
+        let direction = vec3(&row["u"]).normalize();
+        assert!((number(9) - vec3(&row["apparent"]).dot(direction) / r).abs() <= 2e-15 * condition);
+
+        let back = terrell(
+            folder.path(),
+            &[&base[..], &["--inverse", &format!("{:?},{:?},{:?}", number(3), number(4), number(5))]]
+                .concat(),
+        );
+        let back = csv(&back.success().get_output().stdout).remove(0);
+        let x_rest = vec3(&row["x_rest"]);
+        let again = glam::DVec3::new(back[0].unwrap(), back[1].unwrap(), back[2].unwrap());
+        let d = number(7);
+        let gamma = glam::DVec3::length(vec3(&row["u"])).hypot(1.0);
+        let feels = (d.max(1.0 / d) + 1.0).powi(2) * (1.0 + gamma * 1e-2);
+        assert!(
+            (again - x_rest).length() <= 32.0 * f64::EPSILON * feels * (r / d + x_rest.length() + 10.0),
+            "{}",
+            row["kind"]
+        );
+    }
+}
+
+#[test]
+fn locate_reads_csv_and_negative_numbers() {
+    let folder = folder();
+    let arguments = ["locate", "--beta", "-0.9,0,0", "-1,-2,3", "-.5,0,0"];
+    let direct = terrell(folder.path(), &arguments).success().get_output().stdout.clone();
+    let piped = Command::cargo_bin("terrell")
+        .unwrap()
+        .args(["locate", "--beta", "-0.9,0,0"])
+        .write_stdin("x,y,z\n-1,-2,3\n\n -.5, 0, 0\r\n")
+        .assert()
+        .success()
+        .get_output()
+        .stdout
+        .clone();
+    assert_eq!(direct, piped);
+    let rows = csv(&direct);
+    assert_eq!(rows.len(), 2);
+    assert!(rows[0].iter().all(Option::is_some));
+    // 17 significant digits
+    let text = String::from_utf8(direct).unwrap();
+    let digits = text
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split(',')
+        .nth(3)
+        .unwrap()
+        .split('e')
+        .next()
+        .unwrap()
+        .chars()
+        .filter(char::is_ascii_digit);
+    assert_eq!(digits.count(), 17);
+}
+
+#[test]
+fn fields_without_meaning_are_empty() {
+    let folder = folder();
+    let at = |arguments: &[&str]| {
+        csv(&terrell(folder.path(), &[&["locate"], arguments].concat()).success().get_output().stdout)
+            .remove(0)
+    };
+    let rest = at(&["--beta", "0,0,0", "1,2,2"]);
+    assert_eq!(rest[3..8], [Some(1.0), Some(2.0), Some(2.0), Some(3.0), Some(1.0)]);
+    assert_eq!(rest[8..], [None, None, Some(-3.0)]);
+    let here = at(&["--beta", "0.5,0,0", "0,0,0"]);
+    assert_eq!(here[6..], [Some(0.0), None, None, None, Some(0.0)]);
+}
+
+#[test]
+fn locate_refuses_what_makes_no_sense() {
+    let folder = folder();
+    for (arguments, parts) in [
+        (&["locate", "1,2,3"][..], &["velocity"][..]),
+        (&["locate", "--beta", "0.5,0,0", "1,2"], &["1,2", "2 numbers"]),
+        (&["locate", "--beta", "0.5,0,0", "1,2,x"], &["'x'"]),
+        (&["locate", "--beta", "0.5,0,0", "--offset", "1,2,3", "1,2,3"], &["T,X,Y,Z"]),
+        (&["locate", "--beta", "1,0,0", "1,2,3"], &["not below 1"]),
+        (&["locate", "--gamma", "2", "--celerity", "1,0,0", "1,2,3"], &["--celerity"]),
+    ] {
+        refused(folder.path(), arguments, parts);
+    }
+    for (input, part) in [
+        ("", "empty"),
+        ("a,b,c\n1,2,3\n", "line 1"),
+        ("x,y,z\n1,2,3\n1,2\n", "line 3"),
+        ("x,y,z\n1,2,inf\n", "line 2"),
+    ] {
+        let output = Command::cargo_bin("terrell")
+            .unwrap()
+            .args(["locate", "--beta", "0.5"])
+            .write_stdin(input)
+            .assert()
+            .code(2)
+            .get_output()
+            .clone();
+        assert!(String::from_utf8(output.stderr).unwrap().contains(part), "{input:?}");
+    }
+}
+
+/// A closed pipe is an error of its own, not a panic.
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_ends_it_quietly() {
+    let input: String = "x,y,z\n".to_owned() + &"1,2,3\n".repeat(200_000);
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("terrell"))
+        .args(["locate", "--beta", "0.5"])
+        .stdin(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    use std::io::Write;
+    // It may be gone before it has read all.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(!String::from_utf8_lossy(&output.stderr).contains("panicked"));
+}
+
+/// Full channels: what the picture says of each pixel is what `locate` would.
+#[test]
+fn an_exr_holds_what_is_seen() {
+    use exr::prelude::*;
+    let folder = folder();
+    terrell(folder.path(), &["render", "cube", "-o", "a.exr", "--size", "96x64", "-q"]).success();
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(folder.path().join("a.exr"))
+        .unwrap();
+    let names: Vec<String> = image.layer_data.channel_data.list.iter().map(|c| c.name.to_string()).collect();
+    for name in ["R", "G", "B", "distance", "doppler", "body", "face"] {
+        assert!(names.contains(&name.to_owned()), "{names:?}");
+    }
+}

@@ -1,0 +1,197 @@
+//! The readers of files meet hostile input: any bytes give a mesh or an error, never a panic.
+//!
+//! Valid files are damaged (bytes changed, cut out, doubled, numbers replaced by nasty ones), which reaches
+//! deeper than noise. The number of cases is bounded, so this runs everywhere; PROPTEST_CASES=100000 searches
+//! longer.
+
+use proptest::prelude::*;
+use std::path::Path;
+use terrell::geodesic::{Celerity, Event, Tetrad};
+use terrell::relativity::{ApparentMap, Motion};
+use terrell::scene::{framed, import, import_obj, parse_scene};
+
+const OBJ: &str = "# a comment\nmtllib a.mtl\no thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\ng part\nusemtl red\ns 1\nf 1/1/1 2/2/1 3/3/1 4/1/1\nf -5 -4 -1\nf 1//1 3//1 5//1\nl 1 2\np 1\n";
+const MTL: &str = "newmtl red\nKd 0.8 0.1 0.1\nKe 0 0 0\nd 1\nillum 2\n";
+const TOML: &str = "[camera]\ntime = 0\nposition = [0, -3, 1]\nlook_at = [0, 0, 0]\nfov_deg = 60\nsize = [32, 24]\n[material.red]\ncolor = [1, 0, 0]\n[[body]]\nmesh = \"cube\"\nvelocity = [0.9, 0, 0]\nmaterial = \"red\"\nrotation = { axis = [0, 0, 1], angle_deg = 30 }\nscale = 2\n[[body]]\nname = \"other\"\nmesh = \"cube\"\ngamma = 3\ndirection = [0, 1, 0]\n";
+
+fn gltf(uri: &str) -> String {
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"children":[1],"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,1,2,3,1]}},{{"mesh":0,"rotation":[0,0,0,1]}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"COLOR_0":1}},"indices":2,"material":0,"mode":4}}]}}],"materials":[{{"pbrMetallicRoughness":{{"baseColorFactor":[0.5,0.5,0.5,1]}}}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},{{"bufferView":1,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"}},{{"bufferView":2,"componentType":5123,"count":3,"type":"SCALAR","sparse":{{"count":1,"indices":{{"bufferView":2,"componentType":5123}},"values":{{"bufferView":2}}}}}}],"bufferViews":[{{"buffer":0,"byteLength":36}},{{"buffer":0,"byteOffset":36,"byteLength":12}},{{"buffer":0,"byteOffset":48,"byteLength":6}}],"buffers":[{{"byteLength":54{uri}}}]}}"#
+    )
+}
+
+fn binary() -> Vec<u8> {
+    let mut out: Vec<u8> =
+        [0f32, 0., 0., 1., 0., 0., 0., 1., 0.].iter().flat_map(|f| f.to_le_bytes()).collect();
+    out.extend([255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255]);
+    out.extend([0u16, 1, 2].iter().flat_map(|i| i.to_le_bytes()));
+    out
+}
+
+fn glb() -> Vec<u8> {
+    let mut json = gltf("").into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut bin = binary();
+    bin.resize(bin.len().next_multiple_of(4), 0);
+    let mut out = b"glTF".to_vec();
+    out.extend(2u32.to_le_bytes());
+    out.extend((28 + json.len() as u32 + bin.len() as u32).to_le_bytes());
+    for (kind, chunk) in [(b"JSON", json), (b"BIN\0", bin)] {
+        out.extend((chunk.len() as u32).to_le_bytes());
+        out.extend(kind);
+        out.extend(chunk);
+    }
+    out
+}
+
+#[derive(Clone, Debug)]
+enum Damage {
+    Set(usize, u8),
+    Cut(usize, usize),
+    Double(usize, usize),
+    Truncate(usize),
+    /// The n-th number becomes another.
+    Number(usize, &'static str),
+}
+
+fn damage() -> impl Strategy<Value = Vec<Damage>> {
+    let nasty = prop::sample::select(vec![
+        "-1",
+        "0",
+        "1",
+        "2",
+        "3",
+        "7",
+        "255",
+        "65536",
+        "4294967295",
+        "4294967296",
+        "18446744073709551615",
+        "-9223372036854775808",
+        "1e999",
+        "nan",
+        "inf",
+        "0.5",
+        "1e-320",
+        "1e99",
+        "\"x\"",
+        "[]",
+        "null",
+        "5123",
+        "5125",
+        "5126",
+    ]);
+    let at = || 0usize..4000;
+    prop::collection::vec(
+        prop_oneof![
+            (at(), any::<u8>()).prop_map(|(i, b)| Damage::Set(i, b)),
+            (at(), 1usize..40).prop_map(|(i, n)| Damage::Cut(i, n)),
+            (at(), 1usize..40).prop_map(|(i, n)| Damage::Double(i, n)),
+            at().prop_map(Damage::Truncate),
+            (at(), nasty.clone()).prop_map(|(i, n)| Damage::Number(i, n)),
+            (at(), nasty).prop_map(|(i, n)| Damage::Number(i, n)),
+        ],
+        1..5,
+    )
+}
+
+fn damaged(mut bytes: Vec<u8>, damages: &[Damage]) -> Vec<u8> {
+    for damage in damages {
+        if bytes.is_empty() {
+            break;
+        }
+        let n = bytes.len();
+        match *damage {
+            Damage::Set(i, b) => bytes[i % n] = b,
+            Damage::Cut(i, count) => drop(bytes.drain(i % n..(i % n + count).min(n))),
+            Damage::Double(i, count) => {
+                let piece = bytes[i % n..(i % n + count).min(n)].to_vec();
+                bytes.splice(i % n..i % n, piece);
+            }
+            Damage::Truncate(i) => bytes.truncate(i % n),
+            Damage::Number(which, other) => {
+                let digit = |i: usize| bytes[i].is_ascii_digit();
+                let starts: Vec<usize> = (0..n).filter(|&i| digit(i) && (i == 0 || !digit(i - 1))).collect();
+                if let Some(&start) = starts.get(which % starts.len().max(1)) {
+                    let end = (start..n).find(|&i| !digit(i)).unwrap_or(n);
+                    bytes.splice(start..end, other.bytes());
+                }
+            }
+        }
+    }
+    bytes
+}
+
+/// What can be read can be looked at.
+fn look_at(mesh: terrell::scene::Mesh) {
+    let scene = framed("m", mesh, Celerity::new(glam::DVec3::X).unwrap(), vec![]);
+    let mut view = scene.view.clone();
+    view.size = [16, 12];
+    let mut scene = scene;
+    scene.view = view;
+    if let Ok(camera) = scene.camera() {
+        let options = terrell::render::Options { tolerance: 1.0, most_pieces: 10_000, ..Default::default() };
+        let _ = terrell::render::render(&scene, &camera, &options, |_| ());
+    }
+}
+
+#[test]
+fn the_undamaged_files_are_read() {
+    import_obj(OBJ, MTL, "a.obj").unwrap();
+    parse_scene(TOML, Path::new("a.toml")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glb");
+    std::fs::write(&path, glb()).unwrap();
+    let mesh = import(&path).unwrap().mesh;
+    assert_eq!(mesh.triangles.len(), 1);
+    assert_eq!(mesh.corners(0)[1], glam::DVec3::new(2.0, 2.0, 3.0));
+    std::fs::write(folder.path().join("a.bin"), binary()).unwrap();
+    let path = folder.path().join("a.gltf");
+    std::fs::write(&path, gltf(",\"uri\":\"a.bin\"")).unwrap();
+    assert_eq!(import(&path).unwrap().mesh, mesh);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn damaged_obj(damages in damage(), in_library: bool) {
+        let (obj, mtl) = if in_library {
+            (OBJ.to_owned(), String::from_utf8_lossy(&damaged(MTL.into(), &damages)).into_owned())
+        } else {
+            (String::from_utf8_lossy(&damaged(OBJ.into(), &damages)).into_owned(), MTL.to_owned())
+        };
+        if let Ok(imported) = import_obj(&obj, &mtl, "a.obj") {
+            look_at(imported.mesh);
+        }
+    }
+
+    #[test]
+    fn damaged_toml(damages in damage()) {
+        let text = String::from_utf8_lossy(&damaged(TOML.into(), &damages)).into_owned();
+        if let Ok(scene) = parse_scene(&text, Path::new("a.toml")) {
+            let _ = scene.camera();
+        }
+    }
+
+    #[test]
+    fn damaged_gltf(damages in damage(), as_binary: bool) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(if as_binary { "a.glb" } else { "a.gltf" });
+        std::fs::write(folder.path().join("a.bin"), binary()).unwrap();
+        let whole = if as_binary { glb() } else { gltf(",\"uri\":\"a.bin\"").into_bytes() };
+        std::fs::write(&path, damaged(whole, &damages)).unwrap();
+        if let Ok(imported) = import(&path) {
+            look_at(imported.mesh);
+        }
+    }
+
+    /// The map itself takes any numbers without complaint.
+    #[test]
+    fn any_numbers_can_be_mapped(x in prop::array::uniform3(any::<f64>()), u in prop::array::uniform3(any::<f64>())) {
+        if let Ok(celerity) = Celerity::new(glam::DVec3::from_array(u)) {
+            let map = ApparentMap::new(&Motion { celerity, origin: Event::origin() }, &Tetrad::of_world(Event::origin()));
+            let _ = map.see(glam::DVec3::from_array(x));
+        }
+    }
+}
