@@ -19,6 +19,8 @@ use terrell_geodesic::{Real, Tetrad, Wide};
 /// input, for γ up to 10⁹, near the axis included.
 #[derive(Clone, Debug)]
 pub struct ApparentMap {
+    /// The observer in the rest frame.
+    observer: [Wide; 3],
     f64: Constants<f64>,
     f32: Constants<f32>,
     gamma: f64,
@@ -70,23 +72,29 @@ impl ApparentMap {
         let axis = if speed.high > 0.0 { u.map(|c| c / speed) } else { [one, 0.0.into(), 0.0.into()] };
         let gamma = (one + speed * speed).sqrt();
         let k = gamma + speed;
+        let observer = observer_rest.space;
+        let along = observer[0] * axis[0] + observer[1] * axis[1] + observer[2] * axis[2];
+        let across = [0, 1, 2].map(|i| observer[i] - along * axis[i]);
         // What 32 digits leave of a zero is noise; without it an unrotated observer is recognised.
         let axes =
             observer_from_rest.axes().map(|row| row.map(|c| if c.high.abs() < 1e-20 { 0.0 } else { c.high }));
 
         Self {
+            observer,
             f64: Constants {
-                observer: observer_rest.space.map(f64::split_wide),
+                across: across.map(f64::split_wide),
+                along: f64::split_wide(along),
                 axis: axis.map(f64::split_wide),
-                k: k.high,
-                inverse_k: (one / k).high,
+                k: f64::split_wide(k),
+                inverse_k: f64::split_wide(one / k),
                 axes,
             },
             f32: Constants {
-                observer: observer_rest.space.map(f32::split_wide),
+                across: across.map(f32::split_wide),
+                along: f32::split_wide(along),
                 axis: axis.map(f32::split_wide),
-                k: k.high as f32,
-                inverse_k: (one / k).high as f32,
+                k: f32::split_wide(k),
+                inverse_k: f32::split_wide(one / k),
                 axes: axes.map(|row| row.map(|c| c as f32)),
             },
             gamma: gamma.high,
@@ -107,7 +115,7 @@ impl ApparentMap {
 
     /// The observer's position in the body's rest frame at the observer's event.
     pub fn observer_rest(&self) -> DVec3 {
-        self.f64.observer.map(|c| c.high).into()
+        self.observer.map(|c| c.high).into()
     }
 
     /// Unit vector of the relative motion in rest-frame axes; x where nothing moves.
@@ -135,7 +143,7 @@ impl ApparentMap {
     /// The offset x′ of a rest-frame point from the observer, before rounding noise of a large offset.
     #[inline]
     pub fn offset_rest(&self, x_rest: DVec3) -> DVec3 {
-        let o = &self.f64.observer;
+        let o = &self.observer;
         DVec3::new(
             (x_rest.x - o[0].high) - o[0].low,
             (x_rest.y - o[1].high) - o[1].low,
@@ -175,7 +183,7 @@ impl ApparentMap {
 
     /// The Doppler factor of this body over the observer's sky.
     pub fn doppler_sky(&self) -> DopplerSky {
-        DopplerSky { axis: self.axis_observer(), k: self.f64.k, inverse_k: self.f64.inverse_k }
+        DopplerSky { axis: self.axis_observer(), k: self.f64.k.high, inverse_k: self.f64.inverse_k.high }
     }
 
     /// Maps points stored as separate x, y, z; output positions are in the observer's axes.

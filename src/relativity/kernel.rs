@@ -99,13 +99,16 @@ pub struct Pair<R> {
 /// What the map of one body and one observer needs at every vertex, in the body's rest frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Constants<R> {
-    /// The observer's position.
-    pub observer: [Pair<R>; 3],
+    /// The observer's position across the axis; small, where the position itself is γ times as large as
+    /// distances in the world are.
+    pub across: [Pair<R>; 3],
+    /// The observer's position along the axis.
+    pub along: Pair<R>,
     /// Unit vector of the relative motion.
     pub axis: [Pair<R>; 3],
     /// k = γ + |u|, the Doppler factor dead ahead of the approaching body, and 1/k.
-    pub k: R,
-    pub inverse_k: R,
+    pub k: Pair<R>,
+    pub inverse_k: Pair<R>,
     /// Rows: the observer's axes.
     pub axes: [[R; 3]; 3],
 }
@@ -135,7 +138,7 @@ pub(super) struct Seen<R> {
 /// How an offset is taken apart along and across the axis, (x′·axis, x′ × axis), with the last digit right
 /// even where the products cancel: from plain products a point at 10⁻⁹ off the axis would lose nine digits.
 pub(super) trait Decompose {
-    fn decomposed<R: Lane>(offset: [Pair<R>; 3], axis: &[Pair<R>; 3]) -> (R, [R; 3]);
+    fn decomposed<R: Lane>(offset: [Pair<R>; 3], axis: &[Pair<R>; 3]) -> (Pair<R>, [Pair<R>; 3]);
 }
 
 /// The axis is +x exactly: nothing cancels.
@@ -147,14 +150,15 @@ pub(super) struct Halved;
 
 impl Decompose for Aligned {
     #[inline(always)]
-    fn decomposed<R: Lane>([x, y, z]: [Pair<R>; 3], _axis: &[Pair<R>; 3]) -> (R, [R; 3]) {
-        (x.high + x.low, [R::ZERO, z.high + z.low, -(y.high + y.low)])
+    fn decomposed<R: Lane>([x, y, z]: [Pair<R>; 3], _axis: &[Pair<R>; 3]) -> (Pair<R>, [Pair<R>; 3]) {
+        let none = Pair { high: R::ZERO, low: R::ZERO };
+        (x, [none, z, Pair { high: -y.high, low: -y.low }])
     }
 }
 
 impl Decompose for Fused {
     #[inline(always)]
-    fn decomposed<R: Lane>([x, y, z]: [Pair<R>; 3], [a, b, c]: &[Pair<R>; 3]) -> (R, [R; 3]) {
+    fn decomposed<R: Lane>([x, y, z]: [Pair<R>; 3], [a, b, c]: &[Pair<R>; 3]) -> (Pair<R>, [Pair<R>; 3]) {
         // Σ high·low + low·high, on top of what the leading products leave over.
         let minor = |p: Pair<R>, q: &Pair<R>, rest: R| p.high.fused(q.low, p.low.fused(q.high, rest));
         // Kahan's difference of products: p q − s t with both roundings taken back.
@@ -163,30 +167,33 @@ impl Decompose for Fused {
             let rest = (-s.high).fused(t.high, less);
             let whole = p.high.fused(q.high, -less);
             let negative = Pair { high: -s.high, low: -s.low };
-            whole + minor(p, q, minor(negative, t, rest))
+            Pair { high: whole, low: minor(p, q, minor(negative, t, rest)) }
         };
         let first = x.high * a.high;
         let rest = x.high.fused(a.high, -first);
         let second = y.high.fused(b.high, first);
-        let along = z.high.fused(c.high, second) + minor(x, a, minor(y, b, minor(z, c, rest)));
+        let along =
+            Pair { high: z.high.fused(c.high, second), low: minor(x, a, minor(y, b, minor(z, c, rest))) };
         (along, [difference(y, c, z, b), difference(z, a, x, c), difference(x, b, y, a)])
     }
 }
 
 impl Decompose for Halved {
     #[inline(always)]
-    fn decomposed<R: Lane>(offset: [Pair<R>; 3], axis: &[Pair<R>; 3]) -> (R, [R; 3]) {
+    fn decomposed<R: Lane>(offset: [Pair<R>; 3], axis: &[Pair<R>; 3]) -> (Pair<R>, [Pair<R>; 3]) {
         let halves = |p: Pair<R>| {
             let top = p.high.top();
             (top, (p.high - top) + p.low)
         };
         let [x, y, z] = offset.map(halves);
         let [a, b, c] = axis.map(halves);
-        let difference = |(p1, p2): (R, R), (q1, q2): (R, R), (s1, s2): (R, R), (t1, t2): (R, R)| {
-            (p1 * q1 - s1 * t1) + ((p1 * q2 - s1 * t2) + (p2 * q1 - s2 * t1)) + (p2 * q2 - s2 * t2)
+        let difference = |(p1, p2): (R, R), (q1, q2): (R, R), (s1, s2): (R, R), (t1, t2): (R, R)| Pair {
+            high: p1 * q1 - s1 * t1,
+            low: ((p1 * q2 - s1 * t2) + (p2 * q1 - s2 * t1)) + (p2 * q2 - s2 * t2),
         };
         let minor = |(p1, p2): (R, R), (q1, q2): (R, R)| p1 * q2 + p2 * (q1 + q2);
-        let along = (x.0 * a.0 + y.0 * b.0 + z.0 * c.0) + (minor(x, a) + minor(y, b) + minor(z, c));
+        let along =
+            Pair { high: x.0 * a.0 + y.0 * b.0 + z.0 * c.0, low: minor(x, a) + minor(y, b) + minor(z, c) };
         (along, [difference(y, c, z, b), difference(z, a, x, c), difference(x, b, y, a)])
     }
 }
@@ -198,30 +205,62 @@ fn two_sum<R: Lane>(a: R, b: R) -> Pair<R> {
     Pair { high, low: (a - (high - b_part)) + (b - b_part) }
 }
 
+/// A boosted null vector.
+struct Boosted<R> {
+    /// r′ and r.
+    before: R,
+    after: R,
+    /// x along the axis.
+    along: R,
+    /// x across the axis.
+    beside: [R; 3],
+}
+
+impl<R: Lane> Boosted<R> {
+    #[inline(always)]
+    fn position(&self, axis: [R; 3]) -> [R; 3] {
+        let [x, y, z] = self.beside;
+        [self.along * axis[0] + x, self.along * axis[1] + y, self.along * axis[2] + z]
+    }
+}
+
 /// The boost of the null vector (−r′, x′) given its parts: along the axis (P) and across it (x′ × axis).
 ///
 /// With a = r′ + P and b = r′ − P, the one that cancels replaced through a·b = Q²:
 /// r = (k·b + a/k)/2, x∥ = (a/k − k·b)/2. Every step is backward stable, at every γ.
 #[inline(always)]
-fn boosted<R: Lane>(along: R, across: [R; 3], axis: [R; 3], k: R, inverse_k: R) -> ([R; 3], R, R, R) {
+fn boosted<R: Lane>(
+    along: R,
+    across: [Pair<R>; 3],
+    axis: [R; 3],
+    k: Pair<R>,
+    inverse_k: Pair<R>,
+) -> Boosted<R> {
+    // What rounding x′ × axis takes off matters to Q², twice.
+    let across = across.map(|w| {
+        let high = w.high + w.low;
+        Pair { high, low: (w.high - high) + w.low }
+    });
+    let minor = across.map(|w| w.high * w.low);
+    let rest = minor[0] + minor[1] + minor[2];
     let [wx, wy, wz] = across;
-    let square = wx * wx + wy * wy + wz * wz;
+    let square = wx.high * wx.high + wy.high * wy.high + wz.high * wz.high + (rest + rest);
     let before = (along * along + square).root();
     let large = before + along.magnitude();
     let small = if large > R::ZERO { square / large } else { R::ZERO };
     let ahead = along >= R::ZERO;
     let (a, b) = (if ahead { large } else { small }, if ahead { small } else { large });
-    let (a, b) = (a * inverse_k, b * k);
-    let after = R::HALF * (a + b);
-    let along_after = R::HALF * (a - b);
+    let a = a * inverse_k.high + a * inverse_k.low;
+    let b = b * k.high + b * k.low;
     let [x, y, z] = axis;
-    // axis × (x′ × axis) is the part of x′ across the axis, with the digits of the cross product.
-    let position = [
-        along_after * x + (y * wz - z * wy),
-        along_after * y + (z * wx - x * wz),
-        along_after * z + (x * wy - y * wx),
-    ];
-    (position, before, after, along_after)
+    let [wx, wy, wz] = across.map(|w| w.high);
+    Boosted {
+        before,
+        after: R::HALF * (a + b),
+        along: R::HALF * (a - b),
+        // axis × (x′ × axis) is the part of x′ across the axis, with the digits of the cross product.
+        beside: [y * wz - z * wy, z * wx - x * wz, x * wy - y * wx],
+    }
 }
 
 #[inline(always)]
@@ -233,15 +272,23 @@ fn rotated<R: Lane>(axes: &[[R; 3]; 3], [x, y, z]: [R; 3]) -> [R; 3] {
 #[inline(always)]
 pub(super) fn see<R: Lane, D: Decompose, const ROTATE: bool>(c: &Constants<R>, x: [R; 3]) -> Seen<R> {
     let offset = |i: usize| {
-        let o = c.observer[i];
+        let o = c.across[i];
         let d = two_sum(x[i], -o.high);
         Pair { high: d.high, low: d.low - o.low }
     };
     let axis = [c.axis[0].high, c.axis[1].high, c.axis[2].high];
-    let (rest_along, across) = D::decomposed([offset(0), offset(1), offset(2)], &c.axis);
-    let (position, rest_distance, distance, along) = boosted(rest_along, across, axis, c.k, c.inverse_k);
-    let position = if ROTATE { rotated(&c.axes, position) } else { position };
-    Seen { position, distance, doppler: distance / rest_distance, rest_distance, rest_along, along }
+    let (along, across) = D::decomposed([offset(0), offset(1), offset(2)], &c.axis);
+    let rest_along = (along.high - c.along.high) + (along.low - c.along.low);
+    let light = boosted(rest_along, across, axis, c.k, c.inverse_k);
+    let position = light.position(axis);
+    Seen {
+        position: if ROTATE { rotated(&c.axes, position) } else { position },
+        distance: light.after,
+        doppler: light.after / light.before,
+        rest_distance: light.before,
+        rest_along,
+        along: light.along,
+    }
 }
 
 /// Apparent position (relative to the observer, in its axes) back to the rest-frame vertex.
@@ -250,12 +297,15 @@ pub(super) fn unsee(c: &Constants<f64>, seen: [f64; 3]) -> ([f64; 3], Seen<f64>)
     let aligned: [f64; 3] = [0, 1, 2].map(|i| right[i] * seen[0] + up[i] * seen[1] + forward[i] * seen[2]);
     let axis = c.axis.map(|a| a.high);
     let (along, across) = Halved::decomposed(aligned.map(|v| Pair { high: v, low: 0.0 }), &c.axis);
-    let (offset, distance, rest_distance, rest_along) = boosted(along, across, axis, c.inverse_k, c.k);
-    let vertex = [0, 1, 2].map(|i| {
-        let whole = two_sum(offset[i], c.observer[i].high);
-        whole.high + (whole.low + c.observer[i].low)
-    });
-    let doppler = distance / rest_distance;
+    let along = along.high + along.low;
+    let light = boosted(along, across, axis, c.inverse_k, c.k);
+    // Along the axis both summands may be large, and their sum small.
+    let whole_along = (light.along + c.along.high) + c.along.low;
+    let vertex =
+        [0, 1, 2].map(|i| (light.beside[i] + whole_along * axis[i]) + (c.across[i].high + c.across[i].low));
+    // The boost back: what it calls before is seen.
+    let doppler = light.before / light.after;
+    let (distance, rest_distance, rest_along) = (light.before, light.after, light.along);
     (vertex, Seen { position: seen, distance, doppler, rest_distance, rest_along, along })
 }
 

@@ -68,7 +68,7 @@ def direction():
 
 rows = []
 for kind in ("aligned", "general", "near axis", "slow", "near camera", "axis x"):
-    for i in range(25):
+    for i in range(60):
         gamma = 10 ** random.uniform(0.01, 9)
         if kind == "slow":
             gamma = 1 + 10 ** random.uniform(-16, -3)
