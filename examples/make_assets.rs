@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
-use terrell::scene::{Mesh, shapes};
+use terrell::scene::{Mesh, Paint, shapes};
 
 fn main() -> std::io::Result<()> {
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
@@ -20,14 +20,24 @@ fn main() -> std::io::Result<()> {
 fn obj(name: &str, mesh: &Mesh) -> (String, String) {
     let mut obj = format!("# made by examples/make_assets.rs; CC0\nmtllib {name}.mtl\n");
     let mut mtl = String::from("# Kd: linear sRGB\n");
+    let round = |c: f64, digits: f64| (c * digits).round() / digits + 0.0;
     for v in 0..mesh.vertex_count() {
-        let p = mesh.vertex(v as u32);
-        let round = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
-        writeln!(obj, "v {} {} {}", round(p.x), round(p.y), round(p.z)).unwrap();
+        let p = mesh.vertex(v as u32).to_array().map(|c| round(c, 1e6));
+        write!(obj, "v {} {} {}", p[0], p[1], p[2]).unwrap();
+        if let Paint::Vertices(colors) = &mesh.paint {
+            let [r, g, b] = colors[v].map(|c| round(f64::from(c), 1e4));
+            write!(obj, " {r} {g} {b}").unwrap();
+        }
+        obj.push('\n');
     }
     let mut materials = BTreeMap::new();
     let mut last = usize::MAX;
     for (t, corners) in mesh.triangles.iter().enumerate() {
+        let [a, b, c] = corners.map(|v| v + 1);
+        if !mesh.paint.is_of_faces() {
+            writeln!(obj, "f {a} {b} {c}").unwrap();
+            continue;
+        }
         let color = mesh.paint.at(t, *corners, [1.0, 0.0, 0.0]);
         let key = color.map(|c| (c * 1e4).round() as u32);
         let next = materials.len();
@@ -40,7 +50,6 @@ fn obj(name: &str, mesh: &Mesh) -> (String, String) {
             writeln!(obj, "usemtl c{material}").unwrap();
             last = material;
         }
-        let [a, b, c] = corners.map(|v| v + 1);
         writeln!(obj, "f {a} {b} {c}").unwrap();
     }
     (obj, mtl)

@@ -8,20 +8,15 @@ use glam::{DVec2, DVec3};
 pub const SIDE_COLORS: [[f32; 3]; 6] =
     [[0.95, 0.85, 0.1], [0.2, 0.3, 0.9], [0.1, 0.8, 0.2], [0.8, 0.1, 0.1], [0.5; 3], [0.9; 3]];
 
-/// A mesh put together from coloured pieces.
+/// A mesh put together from coloured triangles.
 #[derive(Default)]
 struct Builder {
-    vertices: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
-    colors: Vec<[f32; 3]>,
+    triangles: Vec<[(DVec3, [f32; 3]); 3]>,
 }
 
 impl Builder {
     fn triangle(&mut self, corners: [DVec3; 3], color: [f32; 3]) {
-        let first = self.vertices.len() as u32;
-        self.vertices.extend(corners);
-        self.triangles.push([first, first + 1, first + 2]);
-        self.colors.push(color);
+        self.triangles.push(corners.map(|c| (c, color)));
     }
 
     /// Corners counter-clockwise seen from outside.
@@ -47,24 +42,28 @@ impl Builder {
         }
     }
 
-    /// Equal corners become one vertex.
+    /// Equal corners become one vertex: of equal colours too, if any triangle has several.
     fn finish(self) -> Mesh {
+        let flat = self.triangles.iter().all(|[a, b, c]| a.1 == b.1 && b.1 == c.1);
         let mut index = std::collections::HashMap::new();
-        let mut vertices = Vec::new();
-        let renamed: Vec<u32> = self
-            .vertices
-            .iter()
-            .map(|v| {
-                // −0 is 0 here.
-                let key = (*v + DVec3::ZERO).to_array().map(f64::to_bits);
-                *index.entry(key).or_insert_with(|| {
-                    vertices.push(*v);
-                    vertices.len() as u32 - 1
-                })
+        let (mut vertices, mut colors) = (Vec::new(), Vec::new());
+        let mut vertex = |(at, color): (DVec3, [f32; 3])| {
+            // −0 is 0 here.
+            let place = (at + DVec3::ZERO).to_array().map(f64::to_bits);
+            let paint = if flat { [0; 3] } else { color.map(f32::to_bits) };
+            *index.entry((place, paint)).or_insert_with(|| {
+                vertices.push(at);
+                colors.push(color);
+                vertices.len() as u32 - 1
             })
-            .collect();
-        let triangles = self.triangles.iter().map(|t| t.map(|v| renamed[v as usize])).collect();
-        Mesh { paint: Paint::Faces(self.colors), ..Mesh::new(&vertices, triangles) }
+        };
+        let triangles = self.triangles.iter().map(|t| t.map(&mut vertex)).collect();
+        let paint = if flat {
+            Paint::Faces(self.triangles.iter().map(|t| t[0].1).collect())
+        } else {
+            Paint::Vertices(colors)
+        };
+        Mesh { paint, ..Mesh::new(&vertices, triangles) }
     }
 }
 
@@ -206,19 +205,20 @@ pub fn lattice() -> Mesh {
     const ROD: f64 = 0.03;
     const LOW: [i32; 3] = [-5, -1, 0];
     const HIGH: [i32; 3] = [5, 1, 1];
-    let ball = sphere(1);
+    let ball = sphere(2);
     let mut builder = Builder::default();
     for x in LOW[0]..=HIGH[0] {
         for y in LOW[1]..=HIGH[1] {
             for z in LOW[2]..=HIGH[2] {
                 let node = [x, y, z];
                 let at = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
-                for t in 0..ball.triangles.len() {
-                    let corners = ball.corners(t);
-                    let normal = (corners[0] + corners[1] + corners[2]).normalize();
-                    let light = 0.45 + 0.35 * normal.dot(DVec3::new(0.4, -0.6, -0.7).normalize()) as f32;
-                    builder.triangle(corners.map(|c| at + BALL * c), [light, light, 0.85 * light]);
-                }
+                let painted = |normal: DVec3| {
+                    let light = 0.42 + 0.4 * normal.dot(DVec3::new(0.5, -0.6, -0.6)) as f32;
+                    // Few digits, as the file has.
+                    let light = (100.0 * light).round() / 100.0;
+                    (at + BALL * normal, [light, light, 0.85 * light])
+                };
+                builder.triangles.extend((0..ball.triangles.len()).map(|t| ball.corners(t).map(painted)));
                 for axis in 0..3 {
                     if node[axis] < HIGH[axis] {
                         let along = DVec3::AXES[axis];
@@ -268,7 +268,7 @@ mod tests {
                 for (a, b) in read.corners(t).into_iter().zip(made.corners(t)) {
                     assert!((a - b).length() < 1e-6, "{name}");
                 }
-                let color = |mesh: &Mesh| mesh.paint.at(t, mesh.triangles[t], [1.0, 0.0, 0.0]);
+                let color = |mesh: &Mesh| mesh.paint.at(t, mesh.triangles[t], [0.0, 1.0, 0.0]);
                 assert!(color(&read).iter().zip(color(&made)).all(|(a, b)| (a - b).abs() < 1e-4));
             }
         }
