@@ -18,7 +18,7 @@ struct Arrays<R> {
 }
 
 impl<R: MapLane> Arrays<R> {
-    fn new(n: usize, number: impl Fn(f64) -> R) -> Self {
+    fn new(n: usize, number: fn(f64) -> R) -> Self {
         let coordinate = |k: f64| (0..n).map(|i| number((i as f64 * 0.37 + k).sin() * 3.0)).collect();
         Self {
             from: [coordinate(0.0), coordinate(1.0), coordinate(2.0)],
@@ -26,39 +26,63 @@ impl<R: MapLane> Arrays<R> {
         }
     }
 
-    /// M vertices/s of copy, base and AVX2, measured in turns.
-    fn rates(&mut self, map: &ApparentMap, repeats: usize) -> [f64; 3] {
-        let n = self.from[0].len();
-        let mut times = [vec![], vec![], vec![]];
-        for _ in 0..repeats {
-            let start = Instant::now();
-            for (i, to) in self.to.iter_mut().enumerate() {
-                to.copy_from_slice(std::hint::black_box(&self.from[i % 3]));
-            }
-            std::hint::black_box(&mut self.to);
-            times[0].push(start.elapsed().as_secs_f64());
-            for (which, base) in [(1, true), (2, false)] {
-                let start = Instant::now();
-                let rest = Points { x: &self.from[0], y: &self.from[1], z: &self.from[2] };
-                let [x, y, z, distance, doppler] = &mut self.to;
-                let seen = PointsMut { x, y, z, distance, doppler };
-                if base {
-                    map.see_all_base(rest, seen)
-                } else {
-                    map.see_all(rest, seen)
-                }
-                std::hint::black_box(&mut self.to);
-                times[which].push(start.elapsed().as_secs_f64());
-            }
+    fn copy(&mut self) {
+        for (i, to) in self.to.iter_mut().enumerate() {
+            to.copy_from_slice(std::hint::black_box(&self.from[i % 3]));
         }
-        times.map(|t| n as f64 / median(t) / 1e6)
+        std::hint::black_box(&mut self.to);
+    }
+
+    fn map(&mut self, map: &ApparentMap, base: bool) {
+        let rest = Points { x: &self.from[0], y: &self.from[1], z: &self.from[2] };
+        let [x, y, z, distance, doppler] = &mut self.to;
+        let seen = PointsMut { x, y, z, distance, doppler };
+        if base {
+            map.see_all_base(rest, seen)
+        } else {
+            map.see_all(rest, seen)
+        }
+        std::hint::black_box(&mut self.to);
     }
 }
 
-fn report<R: MapLane>(name: &str, n: usize, repeats: usize, map: &ApparentMap, number: impl Fn(f64) -> R) {
-    let [copy, base, fast] = Arrays::new(n, number).rates(map, repeats);
+/// M vertices/s of copy, base and AVX2, measured in turns; every thread has its share of the vertices.
+fn rates<R: MapLane>(shares: &mut [Arrays<R>], map: &ApparentMap, repeats: usize) -> [f64; 3] {
+    let n: usize = shares.iter().map(|s| s.from[0].len()).sum();
+    let mut times = [vec![], vec![], vec![]];
+    for _ in 0..repeats {
+        for (which, times) in times.iter_mut().enumerate() {
+            let work = |share: &mut Arrays<R>| match which {
+                0 => share.copy(),
+                1 => share.map(map, true),
+                _ => share.map(map, false),
+            };
+            let start = Instant::now();
+            if let [only] = shares {
+                work(only);
+            } else {
+                std::thread::scope(|scope| {
+                    for share in shares.iter_mut() {
+                        scope.spawn(move || work(share));
+                    }
+                });
+            }
+            times.push(start.elapsed().as_secs_f64());
+        }
+    }
+    times.map(|t| n as f64 / median(t) / 1e6)
+}
+
+fn report<R: MapLane>(
+    name: &str,
+    (n, threads, repeats): (usize, usize, usize),
+    map: &ApparentMap,
+    number: fn(f64) -> R,
+) {
+    let mut shares: Vec<_> = (0..threads).map(|_| Arrays::new(n / threads, number)).collect();
+    let [copy, base, fast] = rates(&mut shares, map, repeats);
     println!(
-        "{name:<32} {n:>8}  copy {copy:7.0}   base {base:6.0} ({:4.2} of copy)   avx2 {fast:6.0} ({:4.2} of copy)",
+        "{name:<26} {n:>8} {threads:>7}   copy {copy:7.0}   base {base:6.0} ({:4.2} of copy)   avx2 {fast:6.0} ({:4.2} of copy)",
         base / copy,
         fast / copy
     );
@@ -72,13 +96,15 @@ fn main() {
     let world = Tetrad::of_world(Event::origin());
     let camera = Tetrad::new(Event::origin(), Celerity::at_rest(), DVec3::Y, DVec3::Z).unwrap();
     let (along_x, oblique) = (DVec3::X * 2.0, DVec3::new(2.0, 0.3, -0.1));
-    println!("M vertices/s, one thread, median; 'copy' moves the same bytes (24 → 40 f64, 12 → 20 f32)");
-    for (place, n, repeats) in [("memory", 4_000_000, 9), ("cache", 2_000, 2001)] {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    println!("M vertices/s, median; 'copy' moves the same bytes (24 → 40 f64, 12 → 20 f32)");
+    println!("{:<26} {:>8} threads", "", "vertices");
+    for run in [(4_000_000, all, 15), (4_000_000, 1, 9), (2_000, 1, 2001)] {
         for (motion, celerity) in [("along x", along_x), ("oblique", oblique)] {
             for (axes, observer) in [("world axes", &world), ("camera axes", &camera)] {
                 let map = map(celerity, observer);
-                report(&format!("f64 {motion}, {axes}, {place}"), n, repeats, &map, |v| v);
-                report(&format!("f32 {motion}, {axes}, {place}"), n, repeats, &map, |v| v as f32);
+                report(&format!("f64 {motion}, {axes}"), run, &map, |v| v);
+                report(&format!("f32 {motion}, {axes}"), run, &map, |v| v as f32);
             }
         }
     }
