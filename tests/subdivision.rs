@@ -2,28 +2,12 @@
 
 mod common;
 
-use common::cases;
+use common::{Random, cases};
 use glam::{DVec2, DVec3};
 use terrell::apparent::{ApparentMesh, Field, Piece, Rod, Subdivision};
 use terrell::geodesic::{Celerity, Event, Tetrad};
 use terrell::relativity::{ApparentMap, Motion};
 use terrell::scene::{Lens, Mesh, Projection};
-
-/// A small, fast generator (SplitMix64), so that scenes are the same everywhere.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn point(&mut self, reach: f64) -> DVec3 {
-        DVec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5) * 2.0 * reach
-    }
-}
 
 fn map(celerity: DVec3) -> ApparentMap {
     let motion = Motion { celerity: Celerity::new(celerity).unwrap(), origin: Event::origin() };

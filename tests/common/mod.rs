@@ -29,3 +29,21 @@ pub fn vec3(value: &Value) -> DVec3 {
     let v: Vec<f64> = value.as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect();
     DVec3::new(v[0], v[1], v[2])
 }
+
+/// A small, fast generator (SplitMix64), so that scenes are the same everywhere.
+pub struct Random(pub u64);
+
+impl Random {
+    /// From 0 to 1.
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// In a box around the origin.
+    pub fn point(&mut self, reach: f64) -> DVec3 {
+        DVec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5) * 2.0 * reach
+    }
+}
