@@ -3,7 +3,7 @@
 mod common;
 
 use assert_cmd::Command;
-use common::{cases, points, vec3};
+use common::{cases, points, read_exr, vec3};
 use std::path::Path;
 
 fn terrell(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
@@ -420,22 +420,23 @@ fn a_closed_pipe_ends_it_quietly() {
     assert!(!String::from_utf8_lossy(&output.stderr).contains("panicked"));
 }
 
-/// Full channels: what the picture says of each pixel is what `locate` would.
+/// Full channels, and what they hold where something is seen and where nothing is.
 #[test]
 fn an_exr_holds_what_is_seen() {
-    use exr::prelude::*;
     let folder = folder();
     terrell(folder.path(), &["render", "cube", "-o", "a.exr", "--size", "96x64", "-q"]).success();
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_file(folder.path().join("a.exr"))
-        .unwrap();
-    let names: Vec<String> = image.layer_data.channel_data.list.iter().map(|c| c.name.to_string()).collect();
-    for name in ["R", "G", "B", "distance", "doppler", "body", "face"] {
-        assert!(names.contains(&name.to_owned()), "{names:?}");
-    }
+    let film = read_exr(&folder.path().join("a.exr"));
+    let mut names: Vec<&str> = film.keys().map(String::as_str).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["B", "G", "R", "body", "distance", "doppler", "face"]);
+    let (middle, corner) = (32 * 96 + 48, 0);
+    let at = |name: &str| (film[name][middle], film[name][corner]);
+    assert_eq!(at("body"), (0.0, -1.0));
+    assert_eq!(at("distance").1, 0.0);
+    assert!((2.4..3.6).contains(&at("distance").0));
+    // Seen abreast: D = 1/γ, a little more for the trailing side.
+    assert!((at("doppler").0 - 0.436).abs() < 0.05);
+    // The trailing side, −x, is the first two triangles.
+    assert!(at("face").0 < 2.0);
+    assert!((at("R").0 - 0.95).abs() < 1e-6);
 }

@@ -5,32 +5,8 @@ mod common;
 mod scene_json;
 
 use assert_cmd::Command;
-use common::reference;
+use common::{Channels, read_exr, reference};
 use serde_json::Value;
-use std::collections::HashMap;
-use std::path::Path;
-
-type Channels = HashMap<String, Vec<f32>>;
-
-/// Float channels of an EXR by name.
-fn read_exr(path: &Path) -> Channels {
-    use exr::prelude::*;
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_file(path)
-        .unwrap();
-    image
-        .layer_data
-        .channel_data
-        .list
-        .iter()
-        .map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect()))
-        .collect()
-}
 
 struct Case {
     json: Value,

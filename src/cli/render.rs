@@ -6,14 +6,15 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use terrell::color::Coloring;
 use terrell::film::Film;
+use terrell::geodesic::{Event, World};
 use terrell::picture::{self, Format};
 use terrell::raster::Samples;
 use terrell::relativity::ApparentMap;
 use terrell::render::{Options, Report, Step, render};
-use terrell::scene::{Camera, Projection, Scene};
+use terrell::scene::{Body, Camera, Projection, Scene};
 
 /// One picture of a scene
 ///
@@ -112,18 +113,12 @@ impl Render {
         progress.clear();
         let before_writing = start.elapsed();
         picture::write(&film, &output)?;
-        let times = json!({
-            "reading": read.as_secs_f64(),
-            "mapping_and_cutting": report.subdivision.as_secs_f64(),
-            "shading": report.shading.as_secs_f64(),
-            "writing": (start.elapsed() - before_writing).as_secs_f64(),
-            "whole": start.elapsed().as_secs_f64(),
-        });
-        let seconds = start.elapsed().as_secs_f64();
+        let times = Times { read, write: start.elapsed() - before_writing, whole: start.elapsed() };
+        let done =
+            Done { scene: &scene, camera: &camera, options: &options, film: &film, report, output, times };
         let json_to_stdout = self.json.as_deref() == Some(Path::new("-"));
         if let Some(path) = &self.json {
-            let all = summary(&scene, &camera, &options, &film, &report, &output, times);
-            let text = format!("{all:#}\n");
+            let text = format!("{:#}\n", done.summary());
             if json_to_stdout {
                 std::io::stdout().write_all(text.as_bytes())?;
             } else {
@@ -131,7 +126,7 @@ impl Render {
             }
         }
         if !self.quiet {
-            let line = one_line(&scene, &camera, &options, &film, &report, &output, seconds);
+            let line = done.line();
             if json_to_stdout { eprint!("{line}") } else { std::io::stdout().write_all(line.as_bytes())? }
         }
         Ok(())
@@ -219,65 +214,65 @@ impl Progress {
     }
 }
 
-/// Relative γ of every body and the camera.
-fn gammas(scene: &Scene, camera: &Camera) -> Vec<f64> {
-    scene.bodies.iter().map(|b| ApparentMap::new(&b.motion, &camera.observer).gamma()).collect()
+struct Times {
+    read: Duration,
+    write: Duration,
+    whole: Duration,
 }
 
-fn one_line(
-    scene: &Scene,
-    camera: &Camera,
-    options: &Options,
-    film: &Film,
-    report: &Report,
-    output: &Path,
-    seconds: f64,
-) -> String {
-    let gammas = gammas(scene, camera);
-    let fastest = gammas.iter().copied().fold(1.0, f64::max);
-    let bodies = match gammas.len() {
-        1 => format!("1 body, γ {fastest:.4}"),
-        n => format!("{n} bodies, γ up to {fastest:.4}"),
-    };
-    let mut line = format!(
-        "{}: {}x{} {}, flat spacetime, {bodies}: apparent shading on the CPU, {} triangles cut into {} for {} px, {:.0} ms\n",
-        output.display(),
-        film.width,
-        film.height,
-        camera.lens.projection(),
-        report.triangles,
-        report.pieces,
-        options.tolerance,
-        1e3 * seconds
-    );
-    if film.covered() == 0 {
-        line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
-    }
-    for note in &scene.notes {
-        line.push_str(&format!("note: {note}\n"));
-    }
-    line
+/// What there is to report.
+struct Done<'a> {
+    scene: &'a Scene,
+    camera: &'a Camera,
+    options: &'a Options,
+    film: &'a Film,
+    report: Report,
+    output: PathBuf,
+    times: Times,
 }
 
-fn summary(
-    scene: &Scene,
-    camera: &Camera,
-    options: &Options,
-    film: &Film,
-    report: &Report,
-    output: &Path,
-    times: serde_json::Value,
-) -> serde_json::Value {
-    let event = |e: terrell::geodesic::Event<terrell::geodesic::World>| {
-        let p = e.position();
-        json!([e.t(), p.x, p.y, p.z])
-    };
-    let axes = camera.observer.axes();
-    let bodies: Vec<_> = scene
-        .bodies
-        .iter()
-        .zip(gammas(scene, camera))
-        .map(|(body, gamma)| {
+impl Done<'_> {
+    /// Relative γ of every body and the camera.
+    fn gammas(&self) -> Vec<f64> {
+        let gamma = |body: &Body| ApparentMap::new(&body.motion, &self.camera.observer).gamma();
+        self.scene.bodies.iter().map(gamma).collect()
+    }
+
+    fn line(&self) -> String {
+        let gammas = self.gammas();
+        let fastest = gammas.iter().copied().fold(1.0, f64::max);
+        let bodies = match gammas.len() {
+            1 => format!("1 body, γ {fastest:.4}"),
+            n => format!("{n} bodies, γ up to {fastest:.4}"),
+        };
+        let mut line = format!(
+            "{}: {}x{} {}, flat spacetime, {bodies}: apparent shading on the CPU, {} triangles cut into {} for {} px, {:.0} ms\n",
+            self.output.display(),
+            self.film.width,
+            self.film.height,
+            self.camera.lens.projection(),
+            self.report.triangles,
+            self.report.pieces,
+            self.options.tolerance,
+            1e3 * self.times.whole.as_secs_f64()
+        );
+        if self.film.covered() == 0 {
+            line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
+        }
+        for note in &self.scene.notes {
+            line.push_str(&format!("note: {note}\n"));
+        }
+        line
+    }
+
+    fn summary(&self) -> serde_json::Value {
+        let Self { scene, camera, options, film, report, output, times } = self;
+        let event = |e: Event<World>| {
+            let p = e.position();
+            json!([e.t(), p.x, p.y, p.z])
+        };
+        let axes = camera.observer.axes();
+        let body = |(body, gamma): (&Body, f64)| {
             json!({
                 "name": body.name,
                 "triangles": body.mesh.triangles.len(),
@@ -285,37 +280,42 @@ fn summary(
                 "origin": event(body.motion.origin),
                 "gamma_relative_to_camera": gamma,
             })
+        };
+        let bodies: Vec<_> = scene.bodies.iter().zip(self.gammas()).map(body).collect();
+        let doppler = film.doppler.iter().zip(&film.body).filter(|(_, b)| **b >= 0).map(|(d, _)| [*d, *d]);
+        json!({
+            "terrell": env!("CARGO_PKG_VERSION"),
+            "scene": scene.name,
+            "output": output,
+            "spacetime": "flat",
+            "method": "apparent",
+            "raster": "cpu",
+            "threads": rayon::current_num_threads(),
+            "color": match options.coloring { Coloring::Geometry => "geometry", Coloring::Doppler => "doppler" },
+            "tolerance_px": options.tolerance,
+            "samples": options.samples,
+            "camera": {
+                "projection": camera.lens.projection().to_string(),
+                "size": [film.width, film.height],
+                "event": event(camera.observer.event()),
+                "celerity": camera.observer.celerity().vector().to_array(),
+                "right": axes[0].to_array(),
+                "up": axes[1].to_array(),
+                "forward": axes[2].to_array(),
+            },
+            "bodies": bodies,
+            "triangles": report.triangles,
+            "pieces": report.pieces,
+            "pixels_covered": film.covered(),
+            "doppler_range": doppler.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
+            "seconds": {
+                "reading": times.read.as_secs_f64(),
+                "mapping_and_cutting": report.subdivision.as_secs_f64(),
+                "shading": report.shading.as_secs_f64(),
+                "writing": times.write.as_secs_f64(),
+                "whole": times.whole.as_secs_f64(),
+            },
+            "notes": scene.notes,
         })
-        .collect();
-    let doppler = film.doppler.iter().zip(&film.body).filter(|(_, b)| **b >= 0).map(|(d, _)| *d);
-    let doppler = doppler
-        .fold(None, |range: Option<[f32; 2]>, d| Some(range.map_or([d, d], |[l, h]| [l.min(d), h.max(d)])));
-    json!({
-        "terrell": env!("CARGO_PKG_VERSION"),
-        "scene": scene.name,
-        "output": output,
-        "spacetime": "flat",
-        "method": "apparent",
-        "raster": "cpu",
-        "threads": rayon::current_num_threads(),
-        "color": match options.coloring { Coloring::Geometry => "geometry", Coloring::Doppler => "doppler" },
-        "tolerance_px": options.tolerance,
-        "samples": options.samples,
-        "camera": {
-            "projection": camera.lens.projection().to_string(),
-            "size": [film.width, film.height],
-            "event": event(camera.observer.event()),
-            "celerity": camera.observer.celerity().vector().to_array(),
-            "right": axes[0].to_array(),
-            "up": axes[1].to_array(),
-            "forward": axes[2].to_array(),
-        },
-        "bodies": bodies,
-        "triangles": report.triangles,
-        "pieces": report.pieces,
-        "pixels_covered": film.covered(),
-        "doppler_range": doppler,
-        "seconds": times,
-        "notes": scene.notes,
-    })
+    }
 }

@@ -40,54 +40,39 @@ mod sealed {
     impl Sealed for f32 {}
 }
 
-impl Lane for f64 {
-    const ZERO: Self = 0.0;
-    const HALF: Self = 0.5;
-    #[inline(always)]
-    fn top(self) -> Self {
-        Self::from_bits(self.to_bits() & (!0 << 27))
-    }
-    #[inline(always)]
-    fn root(self) -> Self {
-        self.sqrt()
-    }
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.abs()
-    }
-    #[inline(always)]
-    fn fused(self, by: Self, plus: Self) -> Self {
-        self.mul_add(by, plus)
-    }
-    fn split_wide(value: Wide) -> Pair<Self> {
-        Pair { high: value.high, low: value.low }
-    }
+macro_rules! lane {
+    ($number:ty, low bits $half:literal, $split_wide:expr) => {
+        impl Lane for $number {
+            const ZERO: Self = 0.0;
+            const HALF: Self = 0.5;
+            #[inline(always)]
+            fn top(self) -> Self {
+                Self::from_bits(self.to_bits() & (!0 << $half))
+            }
+            #[inline(always)]
+            fn root(self) -> Self {
+                self.sqrt()
+            }
+            #[inline(always)]
+            fn magnitude(self) -> Self {
+                self.abs()
+            }
+            #[inline(always)]
+            fn fused(self, by: Self, plus: Self) -> Self {
+                self.mul_add(by, plus)
+            }
+            fn split_wide(value: Wide) -> Pair<Self> {
+                $split_wide(value)
+            }
+        }
+    };
 }
 
-impl Lane for f32 {
-    const ZERO: Self = 0.0;
-    const HALF: Self = 0.5;
-    #[inline(always)]
-    fn top(self) -> Self {
-        Self::from_bits(self.to_bits() & (!0 << 12))
-    }
-    #[inline(always)]
-    fn root(self) -> Self {
-        self.sqrt()
-    }
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.abs()
-    }
-    #[inline(always)]
-    fn fused(self, by: Self, plus: Self) -> Self {
-        self.mul_add(by, plus)
-    }
-    fn split_wide(value: Wide) -> Pair<Self> {
-        let high = value.high as f32;
-        Pair { high, low: ((value.high - f64::from(high)) + value.low) as f32 }
-    }
-}
+lane!(f64, low bits 27, |value: Wide| Pair { high: value.high, low: value.low });
+lane!(f32, low bits 12, |value: Wide| {
+    let high = value.high as f32;
+    Pair { high, low: ((value.high - f64::from(high)) + value.low) as f32 }
+});
 
 /// An unevaluated sum high + low.
 #[derive(Clone, Copy, Debug)]

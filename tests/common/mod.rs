@@ -3,7 +3,8 @@
 
 use glam::DVec3;
 use serde_json::Value;
-use std::path::PathBuf;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
 /// A file of tests/reference.
 pub fn reference(name: &str) -> PathBuf {
@@ -46,4 +47,27 @@ impl Random {
     pub fn point(&mut self, reach: f64) -> DVec3 {
         DVec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5) * 2.0 * reach
     }
+}
+
+/// Float channels by name.
+pub type Channels = HashMap<String, Vec<f32>>;
+
+/// Float channels of an EXR.
+pub fn read_exr(path: &Path) -> Channels {
+    use exr::prelude::*;
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(path)
+        .unwrap();
+    image
+        .layer_data
+        .channel_data
+        .list
+        .iter()
+        .map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect()))
+        .collect()
 }
