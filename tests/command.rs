@@ -151,9 +151,11 @@ fn the_users_mistakes_are_explained() {
         (&["render", "cube", "--beta", "0.5", "--direction", "0,0,0"], &["length zero"]),
         (&["render", "cube", "--size", "0x100"], &["0x100"]),
         (&["render", "cube", "--size", "99999x99999"], &["99999"]),
+        (&["render", "cube", "--size", "32768x32768"], &["32768x32768"]),
+        (&["render", "cube", "--time", "1e200"], &["1e200"]),
         (&["render", "cube", "--size", "big"], &["big", "1280x720"]),
         (&["render", "cube", "--fov", "200"], &["200", "fisheye"]),
-        (&["render", "cube", "--fov", "0"], &["0°"]),
+        (&["render", "cube", "--fov", "0"], &["0.000001°"]),
         (&["render", "cube", "--camera", "fishey"], &["fisheye"]),
         (&["render", "cube", "--camera", "panorama", "--fov", "90"], &["360"]),
         (&["render", "cube", "--tolerance", "0"], &["--tolerance"]),
@@ -377,6 +379,7 @@ fn locate_refuses_what_makes_no_sense() {
         (&["locate", "--beta", "0.5,0,0", "1,2,x"], &["'x'"]),
         (&["locate", "--beta", "0.5,0,0", "--offset", "1,2,3", "1,2,3"], &["T,X,Y,Z"]),
         (&["locate", "--beta", "1,0,0", "1,2,3"], &["not below 1"]),
+        (&["locate", "--beta", "0.5,0,0", "1e200,2,3"], &["1e200"]),
         (&["locate", "--gamma", "2", "--celerity", "1,0,0", "1,2,3"], &["--celerity"]),
     ] {
         refused(folder.path(), arguments, parts);

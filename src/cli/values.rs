@@ -22,6 +22,8 @@ pub fn shield_negative(argument: OsString) -> OsString {
 pub fn number(text: &str) -> Result<f64, String> {
     let text = text.trim();
     match text.parse::<f64>() {
+        // What is larger cannot be squared and added up.
+        Ok(v) if v.is_finite() && v.abs() >= 1e100 => Err(format!("'{text}' is beyond 1e100")),
         Ok(v) if v.is_finite() => Ok(v),
         Ok(_) => Err(format!("'{text}' is not finite")),
         Err(_) => Err(format!("'{text}' is not a number")),

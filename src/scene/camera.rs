@@ -38,7 +38,9 @@ pub struct Lens {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LensError {
     /// No pixels, or more than a picture can have.
-    #[error("a picture of {0}x{1} pixels cannot be made; each side must lie between 1 and {MAX_SIDE}")]
+    #[error(
+        "a picture of {0}x{1} pixels cannot be made; each side must lie between 1 and {MAX_SIDE}, and there can be at most {MAX_PIXELS} in all"
+    )]
     Size(u32, u32),
     /// A field the projection cannot show.
     #[error("a {projection} cannot have a field of {fov_deg}°; {allowed}")]
@@ -55,27 +57,32 @@ pub enum LensError {
 /// The longest side of a picture, in pixels.
 pub const MAX_SIDE: u32 = 32_768;
 
+/// The most pixels of a picture: a film of so many takes 4 GB.
+pub const MAX_PIXELS: u64 = 1 << 27;
+
+/// The least field, degrees: below, pixels are closer together than f64 tells directions apart.
+const MIN_FOV_DEG: f64 = 1e-6;
+
 impl Lens {
     /// A lens of the given full field in degrees (see [`Projection`] for what it spans; a panorama's is 360).
     ///
     /// # Errors
     /// On an empty or huge picture and on fields the projection cannot show.
     pub fn new(projection: Projection, fov_deg: f64, width: u32, height: u32) -> Result<Self, LensError> {
-        if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
+        let sides = [width, height].iter().all(|side| (1..=MAX_SIDE).contains(side));
+        if !sides || u64::from(width) * u64::from(height) > MAX_PIXELS {
             return Err(LensError::Size(width, height));
         }
         let field = |allowed| LensError::Field { projection, fov_deg, allowed };
         let (w, h) = (f64::from(width), f64::from(height));
         let half = 0.5 * fov_deg.to_radians();
         let focal = match projection {
-            Projection::Pinhole if !(fov_deg > 0.0 && fov_deg <= 175.0) => {
-                return Err(field(
-                    "it needs more than 0° and at most 175° (beyond, use a fisheye or a panorama)",
-                ));
+            Projection::Pinhole if !(MIN_FOV_DEG..=175.0).contains(&fov_deg) => {
+                return Err(field("it needs 0.000001° to 175° (beyond, use a fisheye or a panorama)"));
             }
             Projection::Pinhole => DVec2::splat(0.5 * h / half.tan()),
-            Projection::Fisheye if !(fov_deg > 0.0 && fov_deg <= 360.0) => {
-                return Err(field("it needs more than 0° and at most 360°"));
+            Projection::Fisheye if !(MIN_FOV_DEG..=360.0).contains(&fov_deg) => {
+                return Err(field("it needs 0.000001° to 360°"));
             }
             Projection::Fisheye => DVec2::splat(0.5 * h / half),
             Projection::Panorama if fov_deg != 360.0 => return Err(field("it always shows 360°")),

@@ -12,7 +12,7 @@ mod view;
 
 pub use body::Body;
 pub use builtin::{Builtin, builtin_mesh, builtin_meshes, builtin_scenes};
-pub use camera::{Camera, Lens, LensError, MAX_SIDE, Projection};
+pub use camera::{Camera, Lens, LensError, MAX_PIXELS, MAX_SIDE, Projection};
 pub use file::{SceneError, parse_scene};
 pub use framing::framed;
 pub use import::{ImportError, Imported, import, import_obj, is_mesh_file};

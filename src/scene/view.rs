@@ -59,7 +59,7 @@ pub enum ViewError {
     )]
     NeverPasses(String),
     /// A time that is no number.
-    #[error("the time {0} is not finite")]
+    #[error("the time {0} is not finite or beyond 1e100")]
     Time(f64),
 }
 
@@ -82,9 +82,9 @@ impl View {
     /// Moves the camera along its world line to the world time `t`.
     ///
     /// # Errors
-    /// If `t` is not finite.
+    /// If `t` is not finite, or so large that squares of it leave the range of f64.
     pub fn set_time(&mut self, t: f64) -> Result<(), ViewError> {
-        if !t.is_finite() {
+        if t.is_nan() || t.abs() >= 1e100 {
             return Err(ViewError::Time(t));
         }
         let elapsed = t - self.event.t();
