@@ -1,9 +1,8 @@
 use super::bins::{Binned, Bins};
-use super::triangle::{HalfPlane, Linear, Planes, owns_boundary};
+use super::triangle::{HalfPlane, Linear, Planes, Surface, owns_boundary};
 use super::{BAND, Drawable, Samples};
-use crate::apparent::ApparentTriangle;
 use crate::color::Coloring;
-use crate::relativity::DopplerSky;
+use crate::relativity::RestSky;
 use crate::scene::{Lens, Projection};
 use glam::{DVec2, DVec3};
 
@@ -25,6 +24,30 @@ pub(super) struct Band {
     triangle: Vec<u32>,
     /// Directions of the samples, where they are not a pinhole's; NaN where there is no sky.
     directions: Vec<DVec3>,
+    /// Their lengths: of (X, Y, 1) for a pinhole, else 1.
+    lengths: Vec<f64>,
+    /// v′·û of the body being drawn, in its columns.
+    along: Vec<f64>,
+}
+
+/// A sample grid of the band: where its lines of sight go.
+#[derive(Clone, Copy)]
+struct Sampling<'a> {
+    lens: &'a Lens,
+    top: u32,
+    offset: DVec2,
+}
+
+impl Sampling<'_> {
+    fn width(&self) -> usize {
+        self.lens.width() as usize
+    }
+
+    /// Line of sight of a column and a line of the band.
+    #[inline]
+    fn direction(&self, x: usize, line: usize) -> Option<DVec3> {
+        self.lens.direction(DVec2::new(x as f64, f64::from(self.top) + line as f64) + self.offset)
+    }
 }
 
 const NONE: u32 = u32::MAX;
@@ -53,56 +76,111 @@ impl Band {
         mut rows: Rows<'_>,
     ) {
         let weight = 1.0 / samples.0.len() as f32;
+        let skies: Vec<RestSky> = bodies.iter().map(|b| b.map.rest_sky()).collect();
+        let columns = bins.columns(top / BAND, bodies.len());
         for (index, &offset) in samples.0.iter().enumerate() {
-            let offset = DVec2::from_array(offset);
-            self.rasterise(bodies, bins, lens, top, offset, rows.color.len());
+            let sampling = Sampling { lens, top, offset: DVec2::from_array(offset) };
+            self.clear(&sampling, rows.color.len());
+            self.rasterise(bodies, &skies, &columns, bins, &sampling);
             // The first sample is the pixel's centre.
-            self.develop(bodies, bins, lens, coloring, top, offset, weight, index == 0, &mut rows);
+            self.develop(bodies, &skies, bins, coloring, &sampling, weight, index == 0, &mut rows);
+        }
+    }
+
+    fn clear(&mut self, sampling: &Sampling<'_>, pixels: usize) {
+        self.nearness.clear();
+        self.nearness.resize(pixels, 0.0);
+        self.triangle.clear();
+        self.triangle.resize(pixels, NONE);
+        self.along.resize(pixels, 0.0);
+        self.lengths.clear();
+        self.directions.clear();
+        let width = sampling.width();
+        if sampling.lens.projection() == Projection::Pinhole {
+            let direction = |i: usize| sampling.direction(i % width, i / width).unwrap_or(DVec3::Z);
+            for line in 0..pixels / width {
+                let row = direction(line * width);
+                let (across, step) = (row.y * row.y + 1.0, 1.0 / sampling.lens.focal().x);
+                self.lengths.extend((0..width).map(|x| {
+                    let at = row.x + x as f64 * step;
+                    (at * at + across).sqrt()
+                }));
+            }
+        } else {
+            let direction = |i: usize| sampling.direction(i % width, i / width).unwrap_or(DVec3::NAN);
+            self.directions.extend((0..pixels).map(direction));
+            self.lengths.resize(pixels, 1.0);
         }
     }
 
     fn rasterise(
         &mut self,
         bodies: &[Drawable<'_>],
+        skies: &[RestSky],
+        columns: &[[u32; 2]],
         bins: &Bins,
-        lens: &Lens,
-        top: u32,
-        offset: DVec2,
-        pixels: usize,
+        sampling: &Sampling<'_>,
     ) {
-        self.nearness.clear();
-        self.nearness.resize(pixels, 0.0);
-        self.triangle.clear();
-        self.triangle.resize(pixels, NONE);
+        let lens = sampling.lens;
         let pinhole = lens.projection() == Projection::Pinhole;
-        if !pinhole {
-            self.directions.clear();
-            self.directions.extend((0..pixels).map(|i| {
-                let at = pixel(i, lens.width() as usize, top);
-                lens.direction(at + offset).unwrap_or(DVec3::NAN)
-            }));
-        }
-        let height = (pixels / lens.width() as usize) as u32;
-        for &Binned { triangle, x, y } in bins.of_band(top / BAND) {
+        let height = (self.nearness.len() / sampling.width()) as u32;
+        let mut current = None;
+        for &Binned { triangle, x, y } in bins.of_band(sampling.top / BAND) {
             let (body, number) = bins.locate(triangle);
-            let seen = bodies[body].seen;
-            let corners = seen.triangles[number].corners.map(|v| seen.vertices[v as usize]);
+            let Drawable { mesh, map, seen, .. } = bodies[body];
+            let piece = seen.triangles[number];
+            let corners = piece.corners.map(|v| seen.vertices[v as usize]);
             let Some(planes) = Planes::new(corners) else { continue };
-            let y = [y[0].max(top), y[1].min(top + height)];
-            let window = Window { width: lens.width() as usize, x, y, top };
+            if current.replace(body) != Some(body) {
+                self.boost_lines_of_sight(&skies[body], columns[body], sampling);
+            }
+            let rest = mesh.corners(piece.face as usize).map(|v| map.offset_rest(v));
+            let surface = Surface::new(map, &skies[body], rest, corners, &planes);
+            let y = [y[0].max(sampling.top), y[1].min(sampling.top + height)];
+            let window = Window { width: sampling.width(), x, y, top: sampling.top };
             if pinhole {
-                self.fill_pinhole(&planes, lens, offset, triangle, &window);
+                self.fill_pinhole(&planes, &surface, lens, sampling.offset, triangle, &window);
             } else {
-                self.fill_directions(&planes, triangle, &window);
+                self.fill_directions(&planes, &surface, triangle, &window);
+            }
+        }
+    }
+
+    /// v′·û of a body for every sample it may cover.
+    fn boost_lines_of_sight(&mut self, sky: &RestSky, [from, to]: [u32; 2], sampling: &Sampling<'_>) {
+        let width = sampling.width();
+        let step = 1.0 / sampling.lens.focal().x;
+        for line in 0..self.along.len() / width {
+            let row = line * width + from as usize..line * width + to as usize;
+            let lengths = &self.lengths[row.clone()];
+            let along = &mut self.along[row.clone()];
+            if self.directions.is_empty() {
+                let first = sampling.direction(0, line).unwrap_or(DVec3::Z);
+                for (i, (along, &length)) in along.iter_mut().zip(lengths).enumerate() {
+                    let v = DVec3::new(first.x + (from as usize + i) as f64 * step, first.y, 1.0);
+                    *along = sky.boosted(v, length).along;
+                }
+            } else {
+                for (along, &n) in along.iter_mut().zip(&self.directions[row]) {
+                    *along = sky.boosted(n, 1.0).along;
+                }
             }
         }
     }
 
     /// Row by row: what three half-planes have in common is a run of pixels.
-    fn fill_pinhole(&mut self, planes: &Planes, lens: &Lens, offset: DVec2, triangle: u32, window: &Window) {
+    fn fill_pinhole(
+        &mut self,
+        planes: &Planes,
+        surface: &Surface,
+        lens: &Lens,
+        offset: DVec2,
+        triangle: u32,
+        window: &Window,
+    ) {
         let (middle, inverse_focal) = (lens.middle(), 1.0 / lens.focal().x);
         let edges = planes.edges.map(|m| HalfPlane::new(m, middle, inverse_focal));
-        let nearness = Linear::of_pinhole(planes.nearness, middle, inverse_focal);
+        let nearness = Linear::of_pinhole(surface.across, middle, inverse_focal);
         let narrow = window.x[1] - window.x[0] <= NARROW;
         for y in window.y[0]..window.y[1] {
             let at_y = f64::from(y) + offset.y;
@@ -113,7 +191,9 @@ impl Band {
                 for x in window.x[0]..window.x[1] {
                     let at_x = f64::from(x) + offset.x;
                     if (0..3).all(|i| edges[i].holds(rows[i], at_x)) {
-                        self.put(base + x as usize, (nearness.a * at_x + near_row) as f32, triangle);
+                        let at = base + x as usize;
+                        let here = nearness.a * at_x + near_row + surface.along * self.along[at];
+                        self.put(at, surface.clamped(here, self.lengths[at]) as f32, triangle);
                     }
                 }
                 continue;
@@ -126,9 +206,11 @@ impl Band {
             if from < to {
                 let start = nearness.a * (f64::from(from) + offset.x) + near_row;
                 let span = base + from as usize..base + to as usize;
+                let sight = self.along[span.clone()].iter().zip(&self.lengths[span.clone()]);
                 let depths = self.nearness[span.clone()].iter_mut().zip(&mut self.triangle[span]);
-                for (i, (depth, id)) in depths.enumerate() {
-                    let here = (start + nearness.a * i as f64) as f32;
+                for (i, ((depth, id), (along, length))) in depths.zip(sight).enumerate() {
+                    let here = start + nearness.a * i as f64 + surface.along * along;
+                    let here = surface.clamped(here, *length) as f32;
                     let nearer = here > *depth;
                     *depth = if nearer { here } else { *depth };
                     *id = if nearer { triangle } else { *id };
@@ -145,7 +227,7 @@ impl Band {
         }
     }
 
-    fn fill_directions(&mut self, planes: &Planes, triangle: u32, window: &Window) {
+    fn fill_directions(&mut self, planes: &Planes, surface: &Surface, triangle: u32, window: &Window) {
         let owns = planes.edges.map(owns_boundary);
         for y in window.y[0]..window.y[1] {
             let base = (y - window.top) as usize * window.width;
@@ -156,7 +238,7 @@ impl Band {
                     e > 0.0 || (owns[i] && e == 0.0)
                 };
                 if inside(0) && inside(1) && inside(2) {
-                    self.put(at, planes.nearness.dot(n) as f32, triangle);
+                    self.put(at, surface.nearness(n, 1.0, self.along[at]) as f32, triangle);
                 }
             }
         }
@@ -167,18 +249,16 @@ impl Band {
     fn develop(
         &self,
         bodies: &[Drawable<'_>],
+        skies: &[RestSky],
         bins: &Bins,
-        lens: &Lens,
         coloring: Coloring,
-        top: u32,
-        offset: DVec2,
+        sampling: &Sampling<'_>,
         weight: f32,
         centre: bool,
         rows: &mut Rows<'_>,
     ) {
-        let width = lens.width() as usize;
-        let skies: Vec<DopplerSky> = bodies.iter().map(|b| b.map.doppler_sky()).collect();
-        let mut last: Option<(u32, usize, ApparentTriangle, Planes)> = None;
+        let width = sampling.width();
+        let mut last: Option<(u32, Seen<'_>)> = None;
         for (line, numbers) in self.triangle.chunks(width).enumerate() {
             for (x, &number) in numbers.iter().enumerate() {
                 if number == NONE {
@@ -187,47 +267,67 @@ impl Band {
                 let i = line * width + x;
                 let direction = match self.directions.get(i) {
                     Some(n) => *n,
-                    None => {
-                        let corner = DVec2::new(x as f64, f64::from(top) + line as f64);
-                        lens.direction(corner + offset).unwrap_or(DVec3::Z)
-                    }
+                    None => sampling.direction(x, line).unwrap_or(DVec3::Z),
                 };
-                if last.is_none_or(|(n, ..)| n != number) {
+                if last.as_ref().is_none_or(|(n, _)| *n != number) {
                     let (body, triangle) = bins.locate(number);
-                    let seen = bodies[body].seen;
-                    let triangle = seen.triangles[triangle];
-                    let corners = triangle.corners.map(|v| seen.vertices[v as usize]);
-                    last = Planes::new(corners).map(|planes| (number, body, triangle, planes));
+                    last = Seen::new(&bodies[body], &skies[body], triangle).map(|seen| (number, seen));
                 }
-                let Some((_, body, piece, planes)) = &last else { continue };
-                let Drawable { body: body_index, mesh, seen, .. } = bodies[*body];
-                let face = piece.face as usize;
-
-                let length = direction.length();
-                let doppler = skies[*body].towards(direction, length);
-                let own = if mesh.paint.is_of_faces() {
-                    mesh.paint.at(face, [0; 3], [1.0; 3])
-                } else {
-                    let e = planes.edges.map(|m| m.dot(direction));
-                    let sum = e[0] + e[1] + e[2];
-                    mesh.paint.at(face, mesh.triangles[face], seen.rest_weights(piece, e.map(|e| e / sum)))
-                };
-                let light = coloring.light(own, doppler);
+                let Some((_, seen)) = &last else { continue };
+                let length = self.lengths[i];
+                let rest = seen.sky.boosted(direction, length);
+                let nearness = seen.surface.nearness(direction, length, rest.along);
+                let doppler = length / rest.length;
+                let light = coloring.light(seen.own_color(direction, rest.along, nearness), doppler);
                 let color = &mut rows.color[i];
                 *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
                 if centre {
-                    rows.distance[i] = (length / planes.nearness.dot(direction)) as f32;
+                    rows.distance[i] = (length / nearness) as f32;
                     rows.doppler[i] = doppler as f32;
-                    rows.body[i] = body_index as i32;
-                    rows.face[i] = face as i32;
+                    rows.body[i] = seen.drawable.body as i32;
+                    rows.face[i] = seen.face as i32;
                 }
             }
         }
     }
 }
 
-/// Upper left corner of the i-th pixel of a band.
-#[inline]
-fn pixel(i: usize, width: usize, top: u32) -> DVec2 {
-    DVec2::new((i % width) as f64, f64::from(top) + (i / width) as f64)
+/// The triangle a pixel sees.
+struct Seen<'a> {
+    drawable: &'a Drawable<'a>,
+    sky: &'a RestSky,
+    face: usize,
+    /// Corners from the observer, rest frame.
+    rest: [DVec3; 3],
+    surface: Surface,
+}
+
+impl<'a> Seen<'a> {
+    fn new(drawable: &'a Drawable<'a>, sky: &'a RestSky, triangle: usize) -> Option<Self> {
+        let Drawable { mesh, map, seen, .. } = drawable;
+        let piece = seen.triangles[triangle];
+        let face = piece.face as usize;
+        let corners = piece.corners.map(|v| seen.vertices[v as usize]);
+        let rest = mesh.corners(face).map(|v| map.offset_rest(v));
+        let surface = Surface::new(map, sky, rest, corners, &Planes::new(corners)?);
+        Some(Self { drawable, sky, face, rest, surface })
+    }
+
+    /// The mesh's own colour at the point a line of sight meets.
+    #[inline]
+    fn own_color(&self, v: DVec3, rest_along: f64, nearness: f64) -> [f32; 3] {
+        let mesh = self.drawable.mesh;
+        if mesh.paint.is_of_faces() {
+            return mesh.paint.at(self.face, [0; 3], [1.0; 3]);
+        }
+        let across = v - v.dot(self.sky.axis()) * self.sky.axis();
+        let v_rest = self.drawable.map.rotate_back(across + rest_along * self.sky.axis());
+        let [a, b, c] = self.rest.map(|corner| corner - v_rest / nearness);
+        let normal = (self.rest[1] - self.rest[0]).cross(self.rest[2] - self.rest[0]);
+        // Areas; beside the outline, the nearest point's.
+        let weights = [b.cross(c), c.cross(a), a.cross(b)].map(|area| area.dot(normal).max(0.0));
+        let sum = weights[0] + weights[1] + weights[2];
+        let weights = if sum > 0.0 { weights.map(|w| w / sum) } else { [1.0, 0.0, 0.0] };
+        mesh.paint.at(self.face, mesh.triangles[self.face], weights)
+    }
 }

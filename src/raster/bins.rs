@@ -64,6 +64,17 @@ impl Bins {
         self.tasks.iter().flat_map(move |task| &task[band as usize])
     }
 
+    /// The columns each body's triangles may cover in a band.
+    pub fn columns(&self, band: u32, bodies: usize) -> Vec<[u32; 2]> {
+        let mut columns = vec![[u32::MAX, 0]; bodies];
+        for binned in self.of_band(band) {
+            let [from, to] = &mut columns[self.locate(binned.triangle).0];
+            *from = (*from).min(binned.x[0]);
+            *to = (*to).max(binned.x[1]);
+        }
+        columns
+    }
+
     /// Position in `bodies` and number within the body.
     #[inline]
     pub fn locate(&self, triangle: u32) -> (usize, usize) {

@@ -175,15 +175,20 @@ impl ApparentMap {
         (x_rest.into(), Sight::from_seen(&seen))
     }
 
-    /// D of whatever part of the body is seen in the direction `n` (any length, observer's axes); see
-    /// [`DopplerSky`].
+    /// D of whatever part of the body is seen in the direction `n` (any length, observer's axes).
     pub fn doppler_towards(&self, n: DVec3) -> f64 {
-        self.doppler_sky().towards(n, n.length())
+        let length = n.length();
+        length / self.rest_sky().boosted(n, length).length
     }
 
-    /// The Doppler factor of this body over the observer's sky.
-    pub fn doppler_sky(&self) -> DopplerSky {
-        DopplerSky { axis: self.axis_observer(), k: self.f64.k.high, inverse_k: self.f64.inverse_k.high }
+    /// The body's sky by the observer's directions.
+    pub fn rest_sky(&self) -> RestSky {
+        RestSky { axis: self.axis_observer(), k: self.f64.k.high, inverse_k: self.f64.inverse_k.high }
+    }
+
+    /// A vector of the observer's axes in the axes of the rest frame; the inverse of [`rotate`](Self::rotate).
+    pub fn rotate_back(&self, v_observer: DVec3) -> DVec3 {
+        self.axes() * v_observer
     }
 
     /// Maps points stored as separate x, y, z; output positions are in the observer's axes.
@@ -203,28 +208,43 @@ impl ApparentMap {
     }
 }
 
-/// D over the sky: for one body in uniform motion it depends on the direction alone,
-/// 1/D = γ(1 + β·n) = ½[k(1 + c) + (1 − c)/k], with c the cosine between n and the motion, and 1 + c taken from
-/// the sine where it cancels: good to 4·10⁻¹⁶ at every γ.
+/// What a direction of the observer's is in the rest frame of one body: the boost of the null vector (−L, v), v
+/// along the line of sight and L its length.
+///
+/// It decides everything a line of sight can meet: D = L/L′ depends on the direction alone, and s·v meets the
+/// body where s·v′ does in its rest frame, for one and the same s. L′ = ½[k(L + v·û) + (L − v·û)/k], with
+/// L + v·û taken from the sine where it cancels: good to 4·10⁻¹⁶ at every γ.
 #[derive(Clone, Copy, Debug)]
-pub struct DopplerSky {
+pub struct RestSky {
     axis: DVec3,
     k: f64,
     inverse_k: f64,
 }
 
-impl DopplerSky {
-    /// D of what is seen in the direction of `v`, whose length is `length` (observer's axes).
+/// A boosted line of sight; across the motion it is what it was.
+#[derive(Clone, Copy, Debug)]
+pub struct BoostedSight {
+    /// v′·û.
+    pub along: f64,
+    /// L′ = |v′|.
+    pub length: f64,
+}
+
+impl RestSky {
+    /// Unit vector of the motion, observer's axes.
+    pub fn axis(&self) -> DVec3 {
+        self.axis
+    }
+
+    /// The line of sight `v` (observer's axes), whose length is `length`, in the rest frame.
     #[inline]
-    pub fn towards(&self, v: DVec3, length: f64) -> f64 {
+    pub fn boosted(&self, v: DVec3, length: f64) -> BoostedSight {
         let along = v.dot(self.axis);
-        let (plus, minus) = if along < 0.0 {
-            let minus = length - along;
-            (v.cross(self.axis).length_squared() / minus, minus)
-        } else {
-            (length + along, length - along)
-        };
-        2.0 * length / (self.k * plus + self.inverse_k * minus)
+        let larger = length + along.abs();
+        let smaller = v.cross(self.axis).length_squared() / larger;
+        let (plus, minus) = if along < 0.0 { (smaller, larger) } else { (larger, smaller) };
+        let (plus, minus) = (self.k * plus, self.inverse_k * minus);
+        BoostedSight { along: 0.5 * (plus - minus), length: 0.5 * (plus + minus) }
     }
 }
 

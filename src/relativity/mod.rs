@@ -4,6 +4,6 @@ mod apparent_map;
 mod kernel;
 mod motion;
 
-pub use apparent_map::{ApparentMap, DopplerSky, MapLane, Sight};
+pub use apparent_map::{ApparentMap, BoostedSight, MapLane, RestSky, Sight};
 pub use kernel::{Lane, Points, PointsMut};
 pub use motion::{Motion, NeverAbreast};
