@@ -28,6 +28,41 @@ pub(super) struct Band {
     lengths: Vec<f64>,
     /// v′·û of the body being drawn, in its columns.
     along: Vec<f64>,
+    /// A row of the triangle being drawn.
+    fresh: Vec<f32>,
+}
+
+/// A triangle being drawn.
+struct Fragment<'a> {
+    stage: &'a Stage<'a>,
+    sampling: &'a Sampling<'a>,
+    surface: &'a Surface,
+    triangle: u32,
+}
+
+/// Nearest points of two triangles that differ by less, relative, are one: rounding.
+const SAME_POINT: f64 = 1e-9;
+
+/// Whether two surfaces at a pixel are so near to each other that outlines drawn too wide could matter; never
+/// where nothing is drawn yet.
+#[inline]
+fn is_close(a: f32, b: f32) -> bool {
+    (a - b).abs() < 0.05 * b
+}
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+struct Stage<'a> {
+    bodies: &'a [Drawable<'a>],
+    skies: &'a [RestSky],
+    bins: &'a Bins,
+}
+
+impl<'a> Stage<'a> {
+    fn seen(&self, number: u32) -> Option<Seen<'a>> {
+        let (body, triangle) = self.bins.locate(number);
+        Seen::new(&self.bodies[body], &self.skies[body], triangle)
+    }
 }
 
 /// A sample grid of the band: where its lines of sight go.
@@ -60,7 +95,6 @@ struct Window {
     width: usize,
     x: [u32; 2],
     y: [u32; 2],
-    top: u32,
 }
 
 impl Band {
@@ -78,12 +112,13 @@ impl Band {
         let weight = 1.0 / samples.0.len() as f32;
         let skies: Vec<RestSky> = bodies.iter().map(|b| b.map.rest_sky()).collect();
         let columns = bins.columns(top / BAND, bodies.len());
+        let stage = Stage { bodies, skies: &skies, bins };
         for (index, &offset) in samples.0.iter().enumerate() {
             let sampling = Sampling { lens, top, offset: DVec2::from_array(offset) };
             self.clear(&sampling, rows.color.len());
-            self.rasterise(bodies, &skies, &columns, bins, &sampling);
+            self.rasterise(&stage, &columns, &sampling);
             // The first sample is the pixel's centre.
-            self.develop(bodies, &skies, bins, coloring, &sampling, weight, index == 0, &mut rows);
+            self.develop(&stage, coloring, &sampling, weight, index == 0, &mut rows);
         }
     }
 
@@ -113,14 +148,8 @@ impl Band {
         }
     }
 
-    fn rasterise(
-        &mut self,
-        bodies: &[Drawable<'_>],
-        skies: &[RestSky],
-        columns: &[[u32; 2]],
-        bins: &Bins,
-        sampling: &Sampling<'_>,
-    ) {
+    fn rasterise(&mut self, stage: &Stage<'_>, columns: &[[u32; 2]], sampling: &Sampling<'_>) {
+        let Stage { bodies, skies, bins } = *stage;
         let lens = sampling.lens;
         let pinhole = lens.projection() == Projection::Pinhole;
         let height = (self.nearness.len() / sampling.width()) as u32;
@@ -137,11 +166,12 @@ impl Band {
             let rest = mesh.corners(piece.face as usize).map(|v| map.offset_rest(v));
             let surface = Surface::new(map, &skies[body], rest, corners, &planes);
             let y = [y[0].max(sampling.top), y[1].min(sampling.top + height)];
-            let window = Window { width: sampling.width(), x, y, top: sampling.top };
+            let window = Window { width: sampling.width(), x, y };
+            let fragment = Fragment { stage, sampling, surface: &surface, triangle };
             if pinhole {
-                self.fill_pinhole(&planes, &surface, lens, sampling.offset, triangle, &window);
+                self.fill_pinhole(&planes, &fragment, &window);
             } else {
-                self.fill_directions(&planes, &surface, triangle, &window);
+                self.fill_directions(&planes, &fragment, &window);
             }
         }
     }
@@ -169,22 +199,16 @@ impl Band {
     }
 
     /// Row by row: what three half-planes have in common is a run of pixels.
-    fn fill_pinhole(
-        &mut self,
-        planes: &Planes,
-        surface: &Surface,
-        lens: &Lens,
-        offset: DVec2,
-        triangle: u32,
-        window: &Window,
-    ) {
+    fn fill_pinhole(&mut self, planes: &Planes, fragment: &Fragment<'_>, window: &Window) {
+        let Fragment { sampling, surface, triangle, .. } = *fragment;
+        let Sampling { lens, top, offset } = *sampling;
         let (middle, inverse_focal) = (lens.middle(), 1.0 / lens.focal().x);
         let edges = planes.edges.map(|m| HalfPlane::new(m, middle, inverse_focal));
         let nearness = Linear::of_pinhole(surface.across, middle, inverse_focal);
         let narrow = window.x[1] - window.x[0] <= NARROW;
         for y in window.y[0]..window.y[1] {
             let at_y = f64::from(y) + offset.y;
-            let base = (y - window.top) as usize * window.width;
+            let base = (y - top) as usize * window.width;
             let rows = edges.map(|edge| edge.row(at_y));
             let near_row = nearness.row(at_y);
             if narrow {
@@ -193,7 +217,7 @@ impl Band {
                     if (0..3).all(|i| edges[i].holds(rows[i], at_x)) {
                         let at = base + x as usize;
                         let here = nearness.a * at_x + near_row + surface.along * self.along[at];
-                        self.put(at, surface.clamped(here, self.lengths[at]) as f32, triangle);
+                        self.put(at, surface.clamped(here, self.lengths[at]) as f32, fragment);
                     }
                 }
                 continue;
@@ -203,34 +227,36 @@ impl Band {
                 run = edges[i].clip(rows[i], offset.x, run);
             }
             let [from, to] = run;
-            if from < to {
-                let start = nearness.a * (f64::from(from) + offset.x) + near_row;
-                let span = base + from as usize..base + to as usize;
-                let sight = self.along[span.clone()].iter().zip(&self.lengths[span.clone()]);
-                let depths = self.nearness[span.clone()].iter_mut().zip(&mut self.triangle[span]);
-                for (i, ((depth, id), (along, length))) in depths.zip(sight).enumerate() {
-                    let here = start + nearness.a * i as f64 + surface.along * along;
-                    let here = surface.clamped(here, *length) as f32;
-                    let nearer = here > *depth;
-                    *depth = if nearer { here } else { *depth };
-                    *id = if nearer { triangle } else { *id };
+            if from >= to {
+                continue;
+            }
+            let start = nearness.a * (f64::from(from) + offset.x) + near_row;
+            let span = base + from as usize..base + to as usize;
+            self.fresh.clear();
+            let sight = self.along[span.clone()].iter().zip(&self.lengths[span.clone()]);
+            self.fresh.extend(sight.enumerate().map(|(i, (along, length))| {
+                surface.clamped(start + nearness.a * i as f64 + surface.along * along, *length) as f32
+            }));
+            let fought = self.fresh.iter().zip(&self.nearness[span.clone()]).any(|(h, d)| is_close(*h, *d));
+            if fought {
+                for (i, at) in span.enumerate() {
+                    self.put(at, self.fresh[i], fragment);
                 }
+                continue;
+            }
+            let depths = self.nearness[span.clone()].iter_mut().zip(&mut self.triangle[span]);
+            for ((depth, id), &here) in depths.zip(&self.fresh) {
+                let nearer = here > *depth;
+                *depth = if nearer { here } else { *depth };
+                *id = if nearer { triangle } else { *id };
             }
         }
     }
 
-    #[inline]
-    fn put(&mut self, at: usize, nearness: f32, triangle: u32) {
-        if nearness > self.nearness[at] {
-            self.nearness[at] = nearness;
-            self.triangle[at] = triangle;
-        }
-    }
-
-    fn fill_directions(&mut self, planes: &Planes, surface: &Surface, triangle: u32, window: &Window) {
+    fn fill_directions(&mut self, planes: &Planes, fragment: &Fragment<'_>, window: &Window) {
         let owns = planes.edges.map(owns_boundary);
         for y in window.y[0]..window.y[1] {
-            let base = (y - window.top) as usize * window.width;
+            let base = (y - fragment.sampling.top) as usize * window.width;
             for at in base + window.x[0] as usize..base + window.x[1] as usize {
                 let n = self.directions[at];
                 let inside = |i: usize| {
@@ -238,19 +264,57 @@ impl Band {
                     e > 0.0 || (owns[i] && e == 0.0)
                 };
                 if inside(0) && inside(1) && inside(2) {
-                    self.put(at, surface.nearness(n, 1.0, self.along[at]) as f32, triangle);
+                    let here = fragment.surface.nearness(n, 1.0, self.along[at]) as f32;
+                    self.put(at, here, fragment);
                 }
             }
         }
     }
 
+    #[inline]
+    fn put(&mut self, at: usize, nearness: f32, fragment: &Fragment<'_>) {
+        let there = self.nearness[at];
+        let wins = if is_close(nearness, there) { self.hides(at, fragment) } else { nearness > there };
+        if wins {
+            self.nearness[at] = nearness;
+            self.triangle[at] = fragment.triangle;
+        }
+    }
+
+    /// Whether a fragment hides what is there already and nearly as near. Outlines are drawn up to the tolerance
+    /// too wide, and there the planes of two faces that meet in the outline have changed places: if the line of
+    /// sight passes beside both, and the point nearest to it is one for both, the face whose plane is farther
+    /// out here is the nearer one inside.
+    #[cold]
+    fn hides(&self, at: usize, fragment: &Fragment<'_>) -> bool {
+        let Fragment { stage, sampling, triangle, .. } = fragment;
+        let (x, line) = (at % sampling.width(), at / sampling.width());
+        let direction = match self.directions.get(at) {
+            Some(n) => *n,
+            None => sampling.direction(x, line).unwrap_or(DVec3::Z),
+        };
+        let length = self.lengths[at];
+        let (Some(new), Some(old)) = (stage.seen(*triangle), stage.seen(self.triangle[at])) else {
+            return false;
+        };
+        let [new, old] = [new, old].map(|seen| {
+            let along = seen.sky.boosted(direction, length).along;
+            let plane = seen.surface.nearness(direction, length, along);
+            (plane, seen.beside(direction, length, along, plane))
+        });
+        if let (Some(a), Some(b)) = (new.1, old.1)
+            && (a - b).abs() < SAME_POINT * b
+        {
+            return new.0 < old.0;
+        }
+        // Faces that lie in each other: the first one drawn.
+        new.0 - old.0 > SAME_POINT * old.0
+    }
+
     /// Looks up what the nearest triangles look like.
-    #[allow(clippy::too_many_arguments, reason = "the other half of draw")]
     fn develop(
         &self,
-        bodies: &[Drawable<'_>],
-        skies: &[RestSky],
-        bins: &Bins,
+        stage: &Stage<'_>,
         coloring: Coloring,
         sampling: &Sampling<'_>,
         weight: f32,
@@ -270,8 +334,7 @@ impl Band {
                     None => sampling.direction(x, line).unwrap_or(DVec3::Z),
                 };
                 if last.as_ref().is_none_or(|(n, _)| *n != number) {
-                    let (body, triangle) = bins.locate(number);
-                    last = Seen::new(&bodies[body], &skies[body], triangle).map(|seen| (number, seen));
+                    last = stage.seen(number).map(|seen| (number, seen));
                 }
                 let Some((_, seen)) = &last else { continue };
                 let length = self.lengths[i];
@@ -313,6 +376,38 @@ impl<'a> Seen<'a> {
         Some(Self { drawable, sky, face, rest, surface })
     }
 
+    /// Barycentric coordinates of the point a line of sight meets; negative beside the triangle.
+    #[inline]
+    fn weights(&self, v: DVec3, rest_along: f64, nearness: f64) -> [f64; 3] {
+        let across = v - v.dot(self.sky.axis()) * self.sky.axis();
+        let v_rest = self.drawable.map.rotate_back(across + rest_along * self.sky.axis());
+        let [a, b, c] = self.rest.map(|corner| corner - v_rest / nearness);
+        let normal = (self.rest[1] - self.rest[0]).cross(self.rest[2] - self.rest[0]);
+        let areas = [b.cross(c), c.cross(a), a.cross(b)].map(|area| area.dot(normal));
+        areas.map(|area| area / normal.length_squared())
+    }
+
+    /// For a line of sight beside the triangle, 1/s of the triangle's point nearest to it; none inside.
+    fn beside(&self, v: DVec3, length: f64, rest_along: f64, plane: f64) -> Option<f64> {
+        let weights = self.weights(v, rest_along, plane);
+        let across = v - v.dot(self.sky.axis()) * self.sky.axis();
+        let v_rest = self.drawable.map.rotate_back(across + rest_along * self.sky.axis()).normalize();
+        let away = |p: DVec3| p - v_rest * p.dot(v_rest);
+        let corners = self.drawable.mesh.corners(self.face);
+        let nearest_of = |i: usize| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let (from, along) = (away(self.rest[j]), away(self.rest[k] - self.rest[j]));
+            let t = (-from.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            (
+                (from + t * along).length() / (self.rest[j].length() + self.rest[k].length()),
+                corners[j].lerp(corners[k], t),
+            )
+        };
+        let (_, point) =
+            (0..3).filter(|&i| weights[i] < 0.0).map(nearest_of).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(length / self.drawable.map.see(point).distance)
+    }
+
     /// The mesh's own colour at the point a line of sight meets.
     #[inline]
     fn own_color(&self, v: DVec3, rest_along: f64, nearness: f64) -> [f32; 3] {
@@ -320,14 +415,14 @@ impl<'a> Seen<'a> {
         if mesh.paint.is_of_faces() {
             return mesh.paint.at(self.face, [0; 3], [1.0; 3]);
         }
-        let across = v - v.dot(self.sky.axis()) * self.sky.axis();
-        let v_rest = self.drawable.map.rotate_back(across + rest_along * self.sky.axis());
-        let [a, b, c] = self.rest.map(|corner| corner - v_rest / nearness);
-        let normal = (self.rest[1] - self.rest[0]).cross(self.rest[2] - self.rest[0]);
-        // Areas; beside the outline, the nearest point's.
-        let weights = [b.cross(c), c.cross(a), a.cross(b)].map(|area| area.dot(normal).max(0.0));
-        let sum = weights[0] + weights[1] + weights[2];
-        let weights = if sum > 0.0 { weights.map(|w| w / sum) } else { [1.0, 0.0, 0.0] };
+        let weights = clamped(self.weights(v, rest_along, nearness));
         mesh.paint.at(self.face, mesh.triangles[self.face], weights)
     }
+}
+
+/// Barycentric coordinates of a point of the triangle near one beside it.
+fn clamped(weights: [f64; 3]) -> [f64; 3] {
+    let weights = weights.map(|w| w.max(0.0));
+    let sum = weights[0] + weights[1] + weights[2];
+    if sum > 0.0 { weights.map(|w| w / sum) } else { [1.0, 0.0, 0.0] }
 }
