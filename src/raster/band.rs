@@ -47,7 +47,7 @@ const SAME_POINT: f64 = 1e-9;
 /// where nothing is drawn yet.
 #[inline]
 fn is_close(a: f32, b: f32) -> bool {
-    (a - b).abs() < 0.05 * b
+    (a - b).abs() < 0.02 * b
 }
 
 /// What is drawn.
@@ -185,10 +185,14 @@ impl Band {
             let lengths = &self.lengths[row.clone()];
             let along = &mut self.along[row.clone()];
             if self.directions.is_empty() {
-                let first = sampling.direction(0, line).unwrap_or(DVec3::Z);
+                // Along a row the line of sight changes by the same vector from pixel to pixel.
+                let first = sampling.direction(from as usize, line).unwrap_or(DVec3::Z);
+                let (along_first, along_step) = (first.dot(sky.axis()), step * sky.axis().x);
+                let (cross_first, cross_step) = (first.cross(sky.axis()), step * DVec3::X.cross(sky.axis()));
                 for (i, (along, &length)) in along.iter_mut().zip(lengths).enumerate() {
-                    let v = DVec3::new(first.x + (from as usize + i) as f64 * step, first.y, 1.0);
-                    *along = sky.boosted(v, length).along;
+                    let i = i as f64;
+                    let square = (cross_first + i * cross_step).length_squared();
+                    *along = sky.boosted_parts(along_first + i * along_step, square, length).along;
                 }
             } else {
                 for (along, &n) in along.iter_mut().zip(&self.directions[row]) {
@@ -274,7 +278,8 @@ impl Band {
     #[inline]
     fn put(&mut self, at: usize, nearness: f32, fragment: &Fragment<'_>) {
         let there = self.nearness[at];
-        let wins = if is_close(nearness, there) { self.hides(at, fragment) } else { nearness > there };
+        let wins =
+            if is_close(nearness, there) { self.hides(at, nearness, fragment) } else { nearness > there };
         if wins {
             self.nearness[at] = nearness;
             self.triangle[at] = fragment.triangle;
@@ -286,7 +291,7 @@ impl Band {
     /// sight passes beside both, and the point nearest to it is one for both, the face whose plane is farther
     /// out here is the nearer one inside.
     #[cold]
-    fn hides(&self, at: usize, fragment: &Fragment<'_>) -> bool {
+    fn hides(&self, at: usize, nearness: f32, fragment: &Fragment<'_>) -> bool {
         let Fragment { stage, sampling, triangle, .. } = fragment;
         let (x, line) = (at % sampling.width(), at / sampling.width());
         let direction = match self.directions.get(at) {
@@ -294,21 +299,20 @@ impl Band {
             None => sampling.direction(x, line).unwrap_or(DVec3::Z),
         };
         let length = self.lengths[at];
-        let (Some(new), Some(old)) = (stage.seen(*triangle), stage.seen(self.triangle[at])) else {
-            return false;
-        };
-        let [new, old] = [new, old].map(|seen| {
+        // Plane, and nearest point beside it.
+        let meet = |number: u32| {
+            let seen = stage.seen(number)?;
             let along = seen.sky.boosted(direction, length).along;
             let plane = seen.surface.nearness(direction, length, along);
-            (plane, seen.beside(direction, length, along, plane))
-        });
-        if let (Some(a), Some(b)) = (new.1, old.1)
-            && (a - b).abs() < SAME_POINT * b
+            Some((plane, seen.beside(direction, length, along, plane)?))
+        };
+        if let Some((plane, new)) = meet(*triangle)
+            && let Some((old_plane, old)) = meet(self.triangle[at])
+            && (new - old).abs() < SAME_POINT * old
         {
-            return new.0 < old.0;
+            return plane < old_plane;
         }
-        // Faces that lie in each other: the first one drawn.
-        new.0 - old.0 > SAME_POINT * old.0
+        nearness > self.nearness[at]
     }
 
     /// Looks up what the nearest triangles look like.

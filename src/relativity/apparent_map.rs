@@ -239,9 +239,14 @@ impl RestSky {
     /// The line of sight `v` (observer's axes), whose length is `length`, in the rest frame.
     #[inline]
     pub fn boosted(&self, v: DVec3, length: f64) -> BoostedSight {
-        let along = v.dot(self.axis);
+        self.boosted_parts(v.dot(self.axis), v.cross(self.axis).length_squared(), length)
+    }
+
+    /// As [`boosted`](Self::boosted), of a line of sight given by v·û and |v × û|².
+    #[inline(always)]
+    pub fn boosted_parts(&self, along: f64, across_squared: f64, length: f64) -> BoostedSight {
         let larger = length + along.abs();
-        let smaller = v.cross(self.axis).length_squared() / larger;
+        let smaller = across_squared / larger;
         let (plus, minus) = if along < 0.0 { (smaller, larger) } else { (larger, smaller) };
         let (plus, minus) = (self.k * plus, self.inverse_k * minus);
         BoostedSight { along: 0.5 * (plus - minus), length: 0.5 * (plus + minus) }
