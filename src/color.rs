@@ -45,6 +45,12 @@ fn false_color(doppler: f64) -> [f32; 3] {
     [0, 1, 2].map(|i| a[i] + t * (b[i] - a[i]))
 }
 
+/// The linear value of an 8-bit sRGB component (IEC 61966-2-1).
+pub fn linear(encoded: u8) -> f32 {
+    let v = f32::from(encoded) / 255.0;
+    if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

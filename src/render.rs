@@ -14,7 +14,7 @@ pub struct Options {
     /// Largest distance in pixels between a drawn edge and its exact image; usually ¼. Time and memory grow
     /// as 1/tolerance for large faces.
     pub tolerance: f64,
-    /// The most triangles a body may be cut into.
+    /// The most triangles all bodies together may be cut into.
     pub most_pieces: usize,
     /// Samples a pixel.
     pub samples: u32,
@@ -55,7 +55,7 @@ pub enum Step {
 /// Eq. 1), cut until flat triangles show it to the pixel, and drawn by a z-buffer.
 ///
 /// # Errors
-/// If a body would be cut into more pieces than allowed.
+/// If the bodies would be cut into more pieces than allowed.
 pub fn render(
     scene: &Scene,
     camera: &Camera,
@@ -63,13 +63,16 @@ pub fn render(
     mut step: impl FnMut(Step),
 ) -> Result<(Film, Report), TooManyPieces> {
     let field = Field::new(&camera.lens);
-    let how = Subdivision { tolerance: options.tolerance, most: options.most_pieces };
+    let pieces = |(_, mesh): &(ApparentMap, ApparentMesh)| mesh.triangles.len();
     let start = Instant::now();
     let mut seen = Vec::with_capacity(scene.bodies.len());
     for (index, body) in scene.bodies.iter().enumerate() {
         step(Step::Cutting(index));
         let map = ApparentMap::new(&body.motion, &camera.observer);
-        let mesh = ApparentMesh::new(&body.mesh, &map, &field, &how)?;
+        let left = options.most_pieces - seen.iter().map(pieces).sum::<usize>();
+        let how = Subdivision { tolerance: options.tolerance, most: left };
+        let fault = |e| TooManyPieces { most: options.most_pieces, ..e };
+        let mesh = ApparentMesh::new(&body.mesh, &map, &field, &how).map_err(fault)?;
         seen.push((map, mesh));
     }
     let cut = Instant::now();
@@ -84,7 +87,7 @@ pub fn render(
     let film = shade(&drawables, &camera.lens, &Samples::new(options.samples), options.coloring);
     let report = Report {
         triangles: scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum(),
-        pieces: seen.iter().map(|(_, mesh)| mesh.triangles.len()).sum(),
+        pieces: seen.iter().map(pieces).sum(),
         subdivision: cut - start,
         shading: cut.elapsed(),
     };

@@ -171,6 +171,9 @@ fn the_users_mistakes_are_explained() {
         (&["render", "cube", "-o", "file/cube.png"], &["file"]),
         (&["render", "cube", "-o", "/proc/cube.png"], &["/proc/cube.png"]),
         (&["render", "cube", "--json", "no/such.json"], &["no/such.json"]),
+        (&["render", "cube", "--json", "."], &["directory"]),
+        (&["render", "cube", "--json", "/proc/a.json"], &["/proc/a.json"]),
+        (&["render", "cube", "-o", "a.png", "--json", "a.png"], &["both"]),
         (&["render", "cub"], &["'cube'"]),
         (&["render", "no.obj"], &["no.obj"]),
         (&["render", "no.toml"], &["no.toml"]),
@@ -190,6 +193,66 @@ fn the_users_mistakes_are_explained() {
         (&["rendr"], &["render"]),
     ] {
         refused(at, arguments, parts);
+    }
+}
+
+/// A device stays a device, a link a link.
+#[cfg(unix)]
+#[test]
+fn outputs_that_are_no_plain_files_are_written_to() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let folder = folder();
+    let null = folder.path().join("null.png");
+    symlink("/dev/null", &null).unwrap();
+    terrell(folder.path(), &["render", "cube", "-o", "null.png", "--size", "8x8", "--json", "/dev/null"])
+        .success();
+    assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+    std::fs::write(folder.path().join("real.exr"), "").unwrap();
+    symlink("real.exr", folder.path().join("link.exr")).unwrap();
+    terrell(folder.path(), &["render", "cube", "-o", "link.exr", "--size", "8x8"]).success();
+    assert!(folder.path().join("link.exr").is_symlink());
+    assert!(std::fs::metadata(folder.path().join("real.exr")).unwrap().len() > 100);
+}
+
+/// A poster just before a wall, a face behind another where depth is squeezed: nothing shows through.
+#[test]
+fn near_surfaces_hide_far_ones_however_close() {
+    let folder = folder();
+    let write = |name: &str, contents: &str| std::fs::write(folder.path().join(name), contents).unwrap();
+    let square =
+        |half: f64| format!("v {0} 0 {0}\nv -{0} 0 {0}\nv -{0} 0 -{0}\nv {0} 0 -{0}\nf 1 2 3 4\n", half);
+    write("wall.obj", &square(2.0));
+    write("poster.obj", &square(0.5));
+    let body = |mesh: &str, depth: f64, velocity: &str| {
+        format!(
+            "[[body]]\nmesh = \"{mesh}.obj\"\ntime = -3\nposition = [0, {depth}, 0]\n{velocity}\nrotation = {{ axis = [0, 0, 1], angle_deg = -45 }}\n"
+        )
+    };
+    for (number, velocity) in
+        ["velocity = [0.9, 0, 0]", "velocity = [0.99, 0, 0]", "gamma = 1000"].iter().enumerate()
+    {
+        let scene = format!(
+            "[camera]\nnearest = \"poster\"\nsize = [320, 240]\n{}{}",
+            body("wall", 3.005, velocity),
+            body("poster", 3.0, velocity).replace("[[body]]", "[[body]]\nname = \"poster\"")
+        );
+        write("a.toml", &scene);
+        let film = |body: usize| {
+            let out = format!("{number}{body}.exr");
+            terrell(folder.path(), &["render", "a.toml", "-o", &out, "-q"]).success();
+            read_exr(&folder.path().join(out))
+        };
+        let both = film(0);
+        // The poster alone, at the same moment.
+        write("a.toml", &scene.replacen(&body("wall", 3.005, velocity), "", 1));
+        let alone = film(1);
+        let poster = (0..320 * 240).filter(|&i| alone["body"][i] == 0.0);
+        let (mut seen, mut lost) = (0, 0);
+        for i in poster {
+            seen += 1;
+            lost += usize::from(both["body"][i] != 1.0);
+        }
+        assert!(seen > 100 && lost == 0, "{velocity}: {lost} of {seen} pixels of the poster show the wall");
     }
 }
 

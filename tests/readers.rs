@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use std::path::Path;
 use terrell::geodesic::{Celerity, Event, Tetrad};
 use terrell::relativity::{ApparentMap, Motion};
-use terrell::scene::{framed, import, import_obj, parse_scene};
+use terrell::scene::{View, framed, import, import_obj, parse_scene};
 
 const OBJ: &str = "# a comment\nmtllib a.mtl\no thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\ng part\nusemtl red\ns 1\nf 1/1/1 2/2/1 3/3/1 4/1/1\nf -5 -4 -1\nf 1//1 3//1 5//1\nl 1 2\np 1\n";
 const MTL: &str = "newmtl red\nKd 0.8 0.1 0.1\nKe 0 0 0\nd 1\nillum 2\n";
@@ -124,11 +124,8 @@ fn damaged(mut bytes: Vec<u8>, damages: &[Damage]) -> Vec<u8> {
 
 /// What can be read can be looked at.
 fn look_at(mesh: terrell::scene::Mesh) {
-    let scene = framed("m", mesh, Celerity::new(glam::DVec3::X).unwrap(), vec![]);
-    let mut view = scene.view.clone();
-    view.size = [16, 12];
-    let mut scene = scene;
-    scene.view = view;
+    let view = View { size: [16, 12], ..View::default() };
+    let scene = framed("m", mesh, Celerity::new(glam::DVec3::X).unwrap(), view, vec![]);
     if let Ok(camera) = scene.camera() {
         let options = terrell::render::Options { tolerance: 1.0, most_pieces: 10_000, ..Default::default() };
         let _ = terrell::render::render(&scene, &camera, &options, |_| ());

@@ -35,20 +35,6 @@ impl Case {
         read_exr(&out)
     }
 
-    /// Pixels a radian.
-    fn focal(&self) -> f64 {
-        let camera = &self.json["camera"];
-        let number = |key: &str| camera[key].as_f64().unwrap();
-        match camera["projection"].as_str().unwrap() {
-            "pinhole" => 0.5 * number("height") / (0.5 * number("fov_deg").to_radians()).tan(),
-            _ => number("height") / std::f64::consts::PI,
-        }
-    }
-
-    fn most_doppler(&self) -> f64 {
-        f64::from(self.expected["doppler"].iter().copied().fold(0.0, f32::max))
-    }
-
     /// The polygon a triangle belongs to.
     fn polygon(&self, body: f32, face: f32) -> f32 {
         if body < 0.0 {
@@ -58,8 +44,8 @@ impl Case {
     }
 }
 
-/// Body and face agree on all inner pixels at the usual tolerance, D to f32, and the largest relative error of
-/// distance falls with the tolerance: returns that at each tolerance.
+/// Body and face agree on all inner pixels at the usual tolerance and finer, D to f32; returns the largest relative
+/// error of the distance at each tolerance.
 fn compare(name: &str) -> Vec<f64> {
     let case = Case::new(name);
     let expected = &case.expected;
@@ -97,17 +83,6 @@ fn compare(name: &str) -> Vec<f64> {
         }
         assert!(compared > 300, "{name}: only {compared} pixels compared");
         errors.push(worst);
-        // What subdivision promises of a surface: 4 tolerances across the line of sight, 4/3 of it in the middle
-        // of a piece, and as much along it, stretched by D where D > 1. In the limit of small pieces.
-        let most = case.most_doppler().max(1.0);
-        // A sphere is seen at grazing angles, where a line of sight meets a displaced surface much nearer or farther.
-        if tolerance <= 0.25 && name != "sphere_b090" {
-            let promised = 16.0 / 3.0 * tolerance / case.focal() * most;
-            assert!(
-                worst <= promised + 2.0 * f64::from(f32::EPSILON),
-                "{name} at {tolerance} px: {worst} > {promised}"
-            );
-        }
     }
     println!(
         "{name}: worst relative error of distance {:?}",
@@ -116,47 +91,47 @@ fn compare(name: &str) -> Vec<f64> {
     errors
 }
 
-/// First order in the tolerance: from ¼ px to 1/256 px the error falls 64-fold, less what is left to chance of
-/// where the worst pixel lies on its piece.
-fn converges(name: &str) {
+/// Where a pixel sees the right triangle, its distance is exact: it is that of the triangle's own plane, whatever the
+/// tolerance the outline was drawn with. 1 px is the outline's business: some inner pixels see a neighbour.
+fn is_exact(name: &str) {
     let errors = compare(name);
-    assert!(errors[4] < errors[1] / 20.0 || errors[4] < 1e-6, "{name}: {errors:?}");
+    assert!(errors[1..].iter().all(|e| *e <= 2.0 * f64::from(f32::EPSILON)), "{name}: {errors:?}");
 }
 
 #[test]
 fn cube_at_rest() {
-    let errors = compare("cube_b000");
-    assert!(errors.iter().all(|e| *e < 2.0 * f64::from(f32::EPSILON)), "nothing to cut: exact");
+    is_exact("cube_b000");
 }
 
 #[test]
 fn cube() {
-    converges("cube_b090");
+    is_exact("cube_b090");
 }
 
 #[test]
 fn lattice() {
-    converges("lattice_b090");
+    is_exact("lattice_b090");
 }
 
 #[test]
 fn gate_pinhole() {
-    converges("gate_b099_x6.0");
+    is_exact("gate_b099_x6.0");
 }
 
 #[test]
 fn gate_panorama() {
-    converges("gate_b099_x1.5_equirect");
+    is_exact("gate_b099_x1.5_equirect");
 }
 
-/// Its triangles are small from the start, so that the first cuts come late.
+/// Its polygons are groups of triangles not in one plane, of which a pixel on an edge inside may see another than
+/// the reference: the ball is 1 across 100 pixels, so within its roundness over a pixel.
 #[test]
 fn sphere() {
     let errors = compare("sphere_b090");
-    assert!(errors.is_sorted_by(|a, b| a >= b) && errors[4] < errors[0] / 2.0, "{errors:?}");
+    assert!(errors.iter().all(|e| *e < 1e-4), "{errors:?}");
 }
 
 #[test]
 fn bodies_with_opposite_velocities() {
-    converges("opposed_b090");
+    is_exact("opposed_b090");
 }

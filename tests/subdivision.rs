@@ -146,7 +146,7 @@ fn every_polyline_stays_within_the_tolerance_to_the_corners_of_the_field() {
                     let nodes = rod.polyline(&map, &field, tolerance);
                     assert!(nodes.windows(2).all(|pair| pair[0].t < pair[1].t));
                     let error = worst_error(rod, &map, &lens, &nodes);
-                    // 1 %: fisheye and panorama measure a small angle by its greatest magnification.
+                    // 2 %: fisheye and panorama measure a small angle by its greatest magnification.
                     let allowed = if lens.projection() == Projection::Pinhole { 1.000_001 } else { 1.02 };
                     assert!(
                         error <= tolerance * allowed,

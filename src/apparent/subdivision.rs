@@ -1,3 +1,4 @@
+use super::arc::MOST_CUTS;
 use super::{ApparentMesh, ApparentTriangle, Arc, Field, Rod};
 use crate::relativity::{ApparentMap, Points, PointsMut};
 use crate::scene::Mesh;
@@ -24,7 +25,7 @@ pub struct Subdivision {
 
 impl Default for Subdivision {
     fn default() -> Self {
-        Self { tolerance: 0.25, most: 20_000_000 }
+        Self { tolerance: 0.25, most: 10_000_000 }
     }
 }
 
@@ -34,7 +35,7 @@ const WARP: f64 = 4.0;
 /// A tolerance that would need more triangles than allowed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "a tolerance of {tolerance} px cuts this mesh into more than {most} triangles; use a larger tolerance"
+    "a tolerance of {tolerance} px cuts the scene into more than {most} triangles; use a larger tolerance"
 )]
 pub struct TooManyPieces {
     /// What was asked, pixels.
@@ -238,7 +239,8 @@ impl Cutter<'_> {
         let extents = sides.map(Side::extent);
         let least =
             extents.into_iter().fold(f64::INFINITY, f64::min) * extents.into_iter().fold(0.0, f64::max);
-        if least / (8.0 * WARP) > self.how.most as f64 {
+        let unreachable = sides.iter().any(|side| side.pieces > MOST_CUTS);
+        if unreachable || least / (8.0 * WARP) > self.how.most as f64 {
             return None;
         }
         self.split(face as u32, corners, sides, 0)

@@ -1,6 +1,6 @@
 use super::Fault;
 use super::source;
-use super::values::{number, size, when};
+use super::values::{count, number, size, when};
 use super::velocity::VelocityFlags;
 use clap::{Args, ValueEnum};
 use serde_json::json;
@@ -11,10 +11,9 @@ use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::geodesic::{Event, World};
 use terrell::picture::{self, Format};
-use terrell::raster::Samples;
 use terrell::relativity::ApparentMap;
 use terrell::render::{Options, Report, Step, render};
-use terrell::scene::{Body, Camera, Projection, Scene};
+use terrell::scene::{Body, Camera, Projection, Scene, View};
 
 /// One picture of a scene
 ///
@@ -54,7 +53,7 @@ pub struct Render {
     #[arg(long, value_name = "PX", value_parser = number, default_value = "0.25")]
     tolerance: f64,
     /// Samples a pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Samples::MOST)), default_value = "1")]
+    #[arg(long, value_name = "N", value_parser = count, default_value = "1")]
     samples: u32,
     /// What a pixel shows
     #[arg(long, value_enum, default_value = "geometry")]
@@ -96,7 +95,10 @@ impl Render {
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
         Format::of(&output)?;
         for path in [Some(&output), self.json.as_ref()].into_iter().flatten() {
-            check_folder(path)?;
+            check_target(path)?;
+        }
+        if self.json.as_ref() == Some(&output) {
+            return Err(format!("{} cannot be both the picture and the JSON", output.display()).into());
         }
         let options = Options {
             tolerance: self.tolerance,
@@ -112,18 +114,22 @@ impl Render {
         let (film, report) = render(&scene, &camera, &options, |step| progress.show(&scene, step))?;
         progress.clear();
         let before_writing = start.elapsed();
-        picture::write(&film, &output)?;
+        let picture = picture::prepare_picture(&film, &output)?;
         let times = Times { read, write: start.elapsed() - before_writing, whole: start.elapsed() };
         let done =
             Done { scene: &scene, camera: &camera, options: &options, film: &film, report, output, times };
         let json_to_stdout = self.json.as_deref() == Some(Path::new("-"));
-        if let Some(path) = &self.json {
-            let text = format!("{:#}\n", done.summary());
-            if json_to_stdout {
-                std::io::stdout().write_all(text.as_bytes())?;
-            } else {
-                picture::write_whole(path, |to| to.write_all(text.as_bytes()))?;
+        match &self.json {
+            Some(path) if !json_to_stdout => {
+                // Both or none.
+                let json = picture::prepare(path, |to| writeln!(to, "{:#}", done.summary()))?;
+                picture.finish()?;
+                json.finish()?;
             }
+            _ => picture.finish()?,
+        }
+        if json_to_stdout {
+            writeln!(std::io::stdout(), "{:#}", done.summary())?;
         }
         if !self.quiet {
             let line = done.line();
@@ -132,10 +138,7 @@ impl Render {
         Ok(())
     }
 
-    /// The scene, with what the flags say over what it says itself.
-    fn scene(&self) -> Result<Scene, Fault> {
-        let mut scene = source::open(&self.scene, self.velocity.speed()?)?;
-        let view = &mut scene.view;
+    fn set_lens(&self, view: &mut View) {
         if let Some(camera) = self.camera {
             let projection = match camera {
                 CameraFlag::Pinhole => Projection::Pinhole,
@@ -148,6 +151,12 @@ impl Render {
         }
         view.fov_deg = self.fov.or(view.fov_deg);
         view.size = self.size.unwrap_or(view.size);
+    }
+
+    /// The scene, with what the flags say over what it says itself.
+    fn scene(&self) -> Result<Scene, Fault> {
+        let mut scene = source::open(&self.scene, self.velocity.speed()?, |view| self.set_lens(view))?;
+        let view = &mut scene.view;
         if let Some(time) = self.time {
             view.set_time(time)?;
         }
@@ -168,8 +177,11 @@ fn is_still(scene: &Scene) -> bool {
     !moves(&scene.view.celerity) && !scene.bodies.iter().any(|b| moves(&b.motion.celerity))
 }
 
-/// A folder that is missing is better known before the work than after.
-fn check_folder(path: &Path) -> Result<(), Fault> {
+/// What cannot be written to is better known before the work than after.
+fn check_target(path: &Path) -> Result<(), Fault> {
+    if path.is_dir() {
+        return Err(format!("cannot write {}: it is a directory", path.display()).into());
+    }
     match path.parent() {
         Some(folder) if folder != Path::new("") && !folder.is_dir() => {
             Err(format!("cannot write {}: there is no folder {}", path.display(), folder.display()).into())

@@ -2,10 +2,18 @@ use super::Fault;
 use super::velocity::of_resting;
 use std::path::Path;
 use terrell::geodesic::Celerity;
-use terrell::scene::{Scene, Speed, builtin_scenes, framed, import, is_mesh_file, parse_scene};
+use terrell::scene::{Scene, Speed, View, builtin_scenes, framed, import, is_mesh_file, parse_scene};
 
 /// SCENE on the command line: the name of a scene that ships, a TOML file, or a mesh.
-pub fn open(source: &str, speed: Option<Speed>) -> Result<Scene, Fault> {
+///
+/// `lens` sets what the flags say of the lens and the size of the picture.
+pub fn open(source: &str, speed: Option<Speed>, lens: impl Fn(&mut View)) -> Result<Scene, Fault> {
+    let mut scene = read(source, speed, &lens)?;
+    lens(&mut scene.view);
+    Ok(scene)
+}
+
+fn read(source: &str, speed: Option<Speed>, lens: &dyn Fn(&mut View)) -> Result<Scene, Fault> {
     if let Some(builtin) = builtin_scenes().iter().find(|b| b.name == source) {
         return with_speed(builtin.scene(), speed);
     }
@@ -19,12 +27,14 @@ pub fn open(source: &str, speed: Option<Speed>) -> Result<Scene, Fault> {
         let imported = import(path)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let celerity = speed.map_or(Ok(Celerity::at_rest()), of_resting)?;
-        return Ok(framed(&name, imported.mesh, celerity, imported.notes));
+        let mut view = View::default();
+        lens(&mut view);
+        return Ok(framed(&name, imported.mesh, celerity, view, imported.notes));
     }
     let names: Vec<_> = builtin_scenes().iter().map(|b| b.name).collect();
-    let nearest = names.iter().min_by_key(|n| strsim_distance(source, n));
-    let hint = match nearest {
-        Some(name) if strsim_distance(source, name) <= 2 => format!("did you mean '{name}'?"),
+    let distance = |name: &&str| strsim::damerau_levenshtein(source, name);
+    let hint = match names.iter().min_by_key(|n| distance(n)) {
+        Some(name) if distance(name) <= 2 => format!("did you mean '{name}'?"),
         _ => format!("scenes that ship: {}", names.join(", ")),
     };
     Err(format!("'{source}' is no scene that ships, and no .toml, .obj, .gltf or .glb file; {hint}").into())
@@ -35,8 +45,4 @@ fn with_speed(mut scene: Scene, speed: Option<Speed>) -> Result<Scene, Fault> {
         scene.set_speed(speed)?;
     }
     Ok(scene)
-}
-
-fn strsim_distance(a: &str, b: &str) -> usize {
-    strsim::damerau_levenshtein(a, b)
 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use std::ffi::OsString;
 use terrell::geodesic::{Event, World};
+use terrell::raster::Samples;
 
 /// A number with a minus sign is a value, never a flag: it gets a space before it, which every parser of
 /// numbers here takes off again.
@@ -24,6 +25,9 @@ pub fn number(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         // What is larger cannot be squared and added up.
         Ok(v) if v.is_finite() && v.abs() >= 1e100 => Err(format!("'{text}' is beyond 1e100")),
+        Ok(v) if v != 0.0 && v.abs() < 1e-100 => {
+            Err(format!("'{text}' is so small that its square is 0; use other units"))
+        }
         Ok(v) if v.is_finite() => Ok(v),
         Ok(_) => Err(format!("'{text}' is not finite")),
         Err(_) => Err(format!("'{text}' is not a number")),
@@ -63,6 +67,13 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
         .split_once(['x', 'X', '×'])
         .and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
     parts.ok_or_else(|| format!("'{text}' is not of the form WIDTHxHEIGHT, such as 1280x720"))
+}
+
+/// Samples a pixel.
+pub fn count(text: &str) -> Result<u32, String> {
+    let most = Samples::MOST;
+    let value = text.trim().parse().ok().filter(|n| (1..=most).contains(n));
+    value.ok_or_else(|| format!("'{}' is not a whole number from 1 to {most}", text.trim()))
 }
 
 /// "nearest BODY".

@@ -5,5 +5,5 @@ mod output;
 mod png;
 
 pub use exr::write_exr;
-pub use output::{Format, WriteError, write, write_whole};
-pub use png::{linear, pixels_srgb, write_png};
+pub use output::{Format, Pending, WriteError, prepare, prepare_picture, write};
+pub use png::{pixels_srgb, write_png};

@@ -42,40 +42,88 @@ impl Format {
     }
 }
 
-/// Writes a file whole or not at all: to a temporary file beside it, which then takes its name.
+/// A file that is written, but does not have its name yet.
+#[derive(Debug)]
+pub struct Pending {
+    path: PathBuf,
+    /// None where the path is no plain file (a device, a pipe) and has been written to directly.
+    file: Option<tempfile::NamedTempFile>,
+}
+
+fn io_error(path: &Path) -> impl Fn(std::io::Error) -> WriteError {
+    move |source| WriteError::Io { path: path.to_owned(), source }
+}
+
+/// Writes to a temporary file beside `path`; [`Pending::finish`] gives it its name. A link is followed; what is no
+/// plain file is written to directly.
 ///
 /// # Errors
 /// If any of it fails; nothing is left behind then.
-pub fn write_whole(
+pub fn prepare(
     path: &Path,
     contents: impl FnOnce(&mut BufWriter<&mut std::fs::File>) -> std::io::Result<()>,
-) -> Result<(), WriteError> {
-    let fault = |source| WriteError::Io { path: path.to_owned(), source };
+) -> Result<Pending, WriteError> {
+    let fault = io_error(path);
     if path.is_dir() {
         return Err(fault(std::io::Error::other("it is a directory")));
     }
-    let folder = match path.parent() {
+    let fill = |file: &mut std::fs::File| {
+        let mut writer = BufWriter::new(file);
+        contents(&mut writer).and_then(|()| writer.flush())
+    };
+    // Where a link leads, if there is anything.
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    if target.exists() && !target.is_file() {
+        let mut device = std::fs::OpenOptions::new().write(true).open(&target).map_err(&fault)?;
+        fill(&mut device).map_err(&fault)?;
+        return Ok(Pending { path: target, file: None });
+    }
+    let folder = match target.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
     };
-    let mut file = tempfile::Builder::new().prefix(".terrell-").tempfile_in(folder).map_err(fault)?;
-    let mut writer = BufWriter::new(file.as_file_mut());
-    contents(&mut writer).and_then(|()| writer.flush()).map_err(fault)?;
-    drop(writer);
-    readable_by_all(file.as_file()).map_err(fault)?;
-    file.persist(path).map_err(|e| fault(e.error))?;
-    Ok(())
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".terrell-");
+    #[cfg(unix)]
+    let everyone = {
+        use std::os::unix::fs::PermissionsExt;
+        // Less the umask, as for any new file.
+        std::fs::Permissions::from_mode(0o666)
+    };
+    #[cfg(unix)]
+    builder.permissions(everyone);
+    let mut file = builder.tempfile_in(folder).map_err(&fault)?;
+    fill(file.as_file_mut()).map_err(&fault)?;
+    Ok(Pending { path: target, file: Some(file) })
 }
 
-/// Temporary files are their owner's alone; finished ones are not.
-fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        file.set_permissions(std::fs::Permissions::from_mode(0o644))?;
+impl Pending {
+    /// Gives the file its name, over whatever had it.
+    ///
+    /// # Errors
+    /// If the system refuses; nothing is left behind then.
+    pub fn finish(self) -> Result<(), WriteError> {
+        match self.file {
+            None => Ok(()),
+            Some(file) => file.persist(&self.path).map(drop).map_err(|e| io_error(&self.path)(e.error)),
+        }
     }
-    let _ = file;
-    Ok(())
+}
+
+/// Writes the film in the format of the file's ending, to be [finished](Pending::finish).
+///
+/// # Errors
+/// On an unknown ending, or if the file cannot be written.
+pub fn prepare_picture(film: &Film, path: &Path) -> Result<Pending, WriteError> {
+    match Format::of(path)? {
+        Format::Png => prepare(path, |to| write_png(film, to)),
+        Format::Exr => {
+            // The writer goes back and forth, which not everything that can be written to allows.
+            let mut bytes = std::io::Cursor::new(Vec::new());
+            write_exr(film, &mut bytes).map_err(io_error(path))?;
+            prepare(path, |to| to.write_all(bytes.get_ref()))
+        }
+    }
 }
 
 /// Writes the film in the format of the file's ending, whole or not at all.
@@ -83,9 +131,5 @@ fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
 /// # Errors
 /// On an unknown ending, or if the file cannot be written.
 pub fn write(film: &Film, path: &Path) -> Result<(), WriteError> {
-    let format = Format::of(path)?;
-    write_whole(path, |to| match format {
-        Format::Png => write_png(film, to),
-        Format::Exr => write_exr(film, to),
-    })
+    prepare_picture(film, path)?.finish()
 }

@@ -13,12 +13,6 @@ fn encode(linear: f32) -> u8 {
     (255.0 * encoded + 0.5) as u8
 }
 
-/// The linear value of an 8-bit sRGB component.
-pub fn linear(encoded: u8) -> f32 {
-    let v = f32::from(encoded) / 255.0;
-    if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
-}
-
 /// Writes the film's colour as a PNG.
 ///
 /// # Errors
@@ -36,6 +30,7 @@ pub fn write_png(film: &Film, to: impl Write) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::linear;
 
     #[test]
     fn srgb_there_and_back() {

@@ -1,14 +1,16 @@
 //! Scenes as TOML.
 
 use super::import::{ImportError, import, is_mesh_file};
-use super::{Aim, Body, Mesh, Paint, Projection, Scene, View, builtin_mesh, builtin_meshes};
+use super::{
+    Aim, Body, LensError, Mesh, Paint, Projection, Scene, View, ViewError, builtin_mesh, builtin_meshes,
+};
 use crate::relativity::Motion;
 use glam::{DAffine3, DQuat, DVec3};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use terrell_geodesic::{Celerity, CelerityError, Event};
+use terrell_geodesic::{Celerity, CelerityError, Event, TetradError};
 use toml::Spanned;
 
 /// Why a scene cannot be read: where, what, and what to try.
@@ -58,9 +60,9 @@ struct CameraTable {
     rapidity: Option<Spanned<f64>>,
     direction: Option<Vector>,
     projection: Option<Spanned<String>>,
-    fov_deg: Option<f64>,
-    size: Option<[u32; 2]>,
-    nearest: Option<String>,
+    fov_deg: Option<Spanned<f64>>,
+    size: Option<Spanned<[u32; 2]>>,
+    nearest: Option<Spanned<String>>,
 }
 
 #[derive(Deserialize)]
@@ -131,6 +133,12 @@ impl Source<'_> {
             1 + self.text.as_bytes()[..at.min(self.text.len())].iter().filter(|&&b| b == b'\n').count()
         });
         SceneError { path: self.path.to_owned(), line, message: message.into() }
+    }
+
+    fn line_at(&self, at: usize) -> &str {
+        let at = at.min(self.text.len());
+        let start = self.text.as_bytes()[..at].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
+        self.text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default()
     }
 
     fn at<T>(&self, place: &Spanned<T>, message: impl std::fmt::Display) -> SceneError {
@@ -222,14 +230,26 @@ fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone
     }
 }
 
-/// The parser's own message, with the nearest known key.
-fn explain(message: &str) -> String {
+/// The parser's own message in the words of the file: with the key of its line, and the nearest known one.
+fn explain(message: &str, line: &str) -> String {
+    let message = message.lines().next().unwrap_or_default();
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    match quoted.split_first() {
-        Some((unknown, known)) if message.starts_with("unknown field") => {
-            format!("unknown key '{unknown}'; {}", did_you_mean(unknown, known.iter().copied()))
-        }
-        _ => message.lines().next().unwrap_or_default().to_owned(),
+    if let ("unknown field", Some((unknown, known))) =
+        (message.get(..13).unwrap_or_default(), quoted.split_first())
+    {
+        return format!("unknown key '{unknown}'; {}", did_you_mean(unknown, known.iter().copied()));
+    }
+    if line.trim_start().starts_with('[') && message.starts_with("invalid type: map, expected a sequence") {
+        return "bodies are a list: write [[body]], with two brackets".to_owned();
+    }
+    let message = match message.split_once("untagged enum ") {
+        Some((_, "Scale")) => "needs one number or three",
+        Some((_, "Color")) => "needs [r, g, b] or \"#rrggbb\"",
+        _ => message,
+    };
+    match line.split_once('=') {
+        Some((key, _)) => format!("{}: {message}", key.trim()),
+        None => message.to_owned(),
     }
 }
 
@@ -239,8 +259,10 @@ fn explain(message: &str) -> String {
 /// With file, line, what is wrong and the nearest known name.
 pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let source = Source { text, path };
-    let file: SceneFile =
-        toml::from_str(text).map_err(|e| source.fault(e.span().map(|s| s.start), explain(e.message())))?;
+    let file: SceneFile = toml::from_str(text).map_err(|e| {
+        let at = e.span().map(|s| s.start);
+        source.fault(at, explain(e.message(), at.map_or("", |at| source.line_at(at))))
+    })?;
     let mut notes = Vec::new();
     let mut meshes: BTreeMap<String, Mesh> = BTreeMap::new();
     let mut bodies: Vec<Body> = Vec::new();
@@ -255,8 +277,15 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     if bodies.is_empty() {
         return Err(source.fault(None, "the scene has no [[body]], so there is nothing to see"));
     }
+    for material in file.material.values() {
+        read_color(&source, &material.color)?;
+    }
     let view = match &file.camera {
-        Some(table) => read_camera(&source, table)?,
+        Some(table) => {
+            let view = read_camera(&source, table)?;
+            check_camera(&source, table, &view, &bodies)?;
+            view
+        }
         None => View::default(),
     };
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -291,9 +320,48 @@ fn read_camera(source: &Source<'_>, table: &CameraTable) -> Result<View, SceneEr
         aim,
         up: table.up.as_ref().map_or(Ok(usual.up), |u| source.vector("up", u))?,
         projection,
-        fov_deg: table.fov_deg,
-        size: table.size.unwrap_or(usual.size),
-        nearest: table.nearest.clone(),
+        fov_deg: table.fov_deg.as_ref().map(|fov| *fov.get_ref()),
+        size: table.size.as_ref().map_or(usual.size, |size| *size.get_ref()),
+        nearest: table.nearest.as_ref().map(|name| name.get_ref().clone()),
+    })
+}
+
+/// What would fail when the camera is made, said where it stands.
+fn check_camera(
+    source: &Source<'_>,
+    table: &CameraTable,
+    view: &View,
+    bodies: &[Body],
+) -> Result<(), SceneError> {
+    let place = |key: &'static str| {
+        let span = match key {
+            "fov_deg" => table.fov_deg.as_ref().map(Spanned::span),
+            "size" => table.size.as_ref().map(Spanned::span),
+            "up" => table.up.as_ref().map(Spanned::span),
+            "look_at" => table.look_at.as_ref().map(Spanned::span),
+            _ => table.forward.as_ref().map(Spanned::span),
+        };
+        (key, span.map(|s| s.start))
+    };
+    let fault =
+        |(key, at): (&str, Option<usize>), e: &dyn std::fmt::Display| source.fault(at, format!("{key}: {e}"));
+    if let Some(name) = &table.nearest {
+        let names = || bodies.iter().map(|b| b.name.as_str());
+        if !names().any(|n| n == name.get_ref()) {
+            let hint = did_you_mean(name.get_ref(), names().collect::<Vec<_>>());
+            return Err(source.at(name, format!("nearest: there is no body '{}'; {hint}", name.get_ref())));
+        }
+    }
+    // At which of its moments the picture is taken matters to none of these.
+    let view = View { nearest: None, ..view.clone() };
+    view.camera(bodies).map(drop).map_err(|e| match &e {
+        ViewError::Lens(LensError::Size(..)) => fault(place("size"), &e),
+        ViewError::Lens(LensError::Field { .. }) => fault(place("fov_deg"), &e),
+        ViewError::Axes(TetradError::NoForward) => fault(place("forward"), &e),
+        ViewError::Axes(TetradError::NoUp) => {
+            fault(place(if table.up.is_some() { "up" } else { "forward" }), &e)
+        }
+        _ => fault(place("look_at"), &e),
     })
 }
 
@@ -404,7 +472,7 @@ fn read_color(source: &Source<'_>, place: &Spanned<Color>) -> Result<[f32; 3], S
             let value = digits.and_then(|d| u32::from_str_radix(d, 16).ok());
             let value = value
                 .ok_or_else(|| source.at(place, format!("color '{text}' is not of the form #rrggbb")))?;
-            Ok([16, 8, 0].map(|shift| crate::picture::linear((value >> shift & 0xff) as u8)))
+            Ok([16, 8, 0].map(|shift| crate::color::linear((value >> shift & 0xff) as u8)))
         }
     }
 }

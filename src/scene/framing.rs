@@ -1,4 +1,4 @@
-use super::{Aim, Body, Mesh, Scene, View};
+use super::{Aim, Body, Mesh, Projection, Scene, View};
 use crate::relativity::Motion;
 use glam::DVec3;
 use std::sync::Arc;
@@ -10,12 +10,12 @@ use terrell_geodesic::{Celerity, Event};
 /// The camera looks along −z with y up, as glTF viewers do, or as near to that as square to the motion allows.
 /// A body's bounding sphere seen abreast keeps the angular size it has at rest at that distance (Penrose), so
 /// one distance serves all speeds.
-pub fn framed(name: &str, mesh: Mesh, celerity: Celerity, notes: Vec<String>) -> Scene {
+///
+/// `view` gives the lens and the picture's size; the rest of it is set here.
+pub fn framed(name: &str, mesh: Mesh, celerity: Celerity, view: View, notes: Vec<String>) -> Scene {
     let (low, high) = mesh.bounds().unwrap_or((DVec3::ZERO, DVec3::ZERO));
     let centre = 0.5 * (low + high);
     let radius = (0.5 * (high - low).length()).max(1e-30);
-    let view = View::default();
-
     let along = celerity.direction();
     let square = |v: DVec3| along.map_or(v, |axis| v - axis * v.dot(axis));
     let forward = [-DVec3::Z, -DVec3::X, DVec3::Y]
@@ -26,8 +26,17 @@ pub fn framed(name: &str, mesh: Mesh, celerity: Celerity, notes: Vec<String>) ->
         .normalize();
     let up = [DVec3::Y, DVec3::Z].into_iter().find(|u| u.cross(forward).length() > 0.5).unwrap_or(DVec3::X);
 
-    // The smaller half-field of the usual picture, and a margin.
-    let half = 0.5 * View::usual_fov_deg(view.projection).to_radians();
+    // The smaller half-field, and a margin. Beyond a radian the mesh would be seen from too near.
+    let fov_deg = view.fov_deg.unwrap_or(View::usual_fov_deg(view.projection));
+    let half = 0.5 * fov_deg.to_radians();
+    let across = f64::from(view.size[0]) / f64::from(view.size[1].max(1));
+    let half = match view.projection {
+        Projection::Pinhole => half.min((half.tan() * across).atan()),
+        Projection::Fisheye => half.min(half * across),
+        Projection::Panorama => 1.0,
+    };
+    // A field no lens has is refused when the camera is made.
+    let half = if half > 0.0 { half.min(1.0) } else { 1.0 };
     let distance = 1.1 * radius / half.sin();
 
     // The rest frame's origin passes so that the centre is abreast at −distance, seen at 0.
@@ -58,16 +67,28 @@ mod tests {
             );
         }
         let mesh = Mesh::new(&vertices, vec![[0, 1, 2]]);
+        let views = [
+            (Projection::Pinhole, None, [1280, 720]),
+            (Projection::Pinhole, Some(15.0), [300, 900]),
+            (Projection::Pinhole, Some(150.0), [900, 300]),
+            (Projection::Fisheye, None, [400, 300]),
+            (Projection::Fisheye, Some(60.0), [200, 300]),
+            (Projection::Panorama, None, [400, 200]),
+        ];
         for direction in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(1.0, -2.0, 0.5)] {
             for gamma in [1.0, 1.2, 5.0, 1e3, 1e6] {
-                let celerity = Celerity::from_gamma(gamma, direction).unwrap();
-                let scene = framed("m", mesh.clone(), celerity, vec![]);
-                let camera = scene.camera().unwrap();
-                let map = ApparentMap::new(&scene.bodies[0].motion, &camera.observer);
-                for v in &vertices {
-                    let pixel = camera.lens.pixel(map.see(*v).position).unwrap();
-                    let inside = pixel.x > 0.0 && pixel.y > 0.0 && pixel.x < 1280.0 && pixel.y < 720.0;
-                    assert!(inside, "{direction} γ {gamma}: {pixel}");
+                for (projection, fov_deg, size) in views {
+                    let celerity = Celerity::from_gamma(gamma, direction).unwrap();
+                    let view = View { projection, fov_deg, size, ..View::default() };
+                    let scene = framed("m", mesh.clone(), celerity, view, vec![]);
+                    let camera = scene.camera().unwrap();
+                    let map = ApparentMap::new(&scene.bodies[0].motion, &camera.observer);
+                    for v in &vertices {
+                        let pixel = camera.lens.pixel(map.see(*v).position).unwrap();
+                        let inside = pixel.x > 0.0 && pixel.y > 0.0;
+                        let inside = inside && pixel.x < f64::from(size[0]) && pixel.y < f64::from(size[1]);
+                        assert!(inside, "{direction} γ {gamma} {projection}: {pixel}");
+                    }
                 }
             }
         }

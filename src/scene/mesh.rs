@@ -45,13 +45,16 @@ pub enum MeshError {
     #[error("the mesh has no triangles")]
     Empty,
     /// A coordinate is NaN, infinite or too large to square.
-    #[error("vertex {vertex} is at ({position}); every coordinate must be finite and below 1e100")]
+    #[error("vertex {vertex} is at ({position}); every coordinate must be finite and below 1e50")]
     BadVertex {
         /// Its index.
         vertex: usize,
         /// What was found.
         position: String,
     },
+    /// So small that areas vanish.
+    #[error("the mesh is less than 1e-50 across; scale it up")]
+    TooSmall,
     /// A triangle names a vertex that is not there.
     #[error("triangle {triangle} uses vertex {vertex}, but the mesh has {count} vertices (0 to {})", .count.saturating_sub(1))]
     BadIndex {
@@ -208,10 +211,16 @@ impl Mesh {
         }
         for vertex in 0..count {
             let at = self.vertex(vertex as u32);
-            if !at.is_finite() || at.abs().max_element() >= 1e100 {
+            if !at.is_finite() || at.abs().max_element() >= 1e50 {
                 let position = format!("{}, {}, {}", at.x, at.y, at.z);
                 return Err(MeshError::BadVertex { vertex, position });
             }
+        }
+        if let Some((low, high)) = self.bounds()
+            && low != high
+            && (high - low).max_element() < 1e-50
+        {
+            return Err(MeshError::TooSmall);
         }
         for (triangle, corners) in self.triangles.iter().enumerate() {
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= count) {

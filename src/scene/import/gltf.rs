@@ -9,6 +9,9 @@ use std::path::Path;
 /// sidedness. Coordinates stay the file's own (y up).
 pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imported, ImportError> {
     let fault = |message: String| ImportError::Contents { path: path.to_owned(), line: None, message };
+    if bytes.is_empty() {
+        return Err(fault("the file is empty".into()));
+    }
     if bytes.starts_with(b"glTF") {
         check_glb(bytes).map_err(fault)?;
     }
@@ -31,7 +34,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
                     Some(data) => {
                         base64(data).ok_or_else(|| fault("a data URI in it is not base64".into()))?
                     }
-                    None => read(&beside(path, Path::new(uri)))?,
+                    None => read(&beside(path, Path::new(&decoded(uri))))?,
                 },
             };
             if contents.len() < buffer.length() {
@@ -56,7 +59,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     match scene {
         Some(scene) => {
             for node in scene.nodes() {
-                reader.node(&node, DMat4::IDENTITY).map_err(fault)?;
+                reader.tree(node).map_err(fault)?;
             }
         }
         None => {
@@ -71,6 +74,26 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         notes.push("the mesh has no colours; painted in clay by the direction its faces look".into());
     }
     Ok(Imported { mesh, notes })
+}
+
+/// A relative URI as a path: %20 is a space.
+fn decoded(uri: &str) -> String {
+    let mut out = Vec::new();
+    let mut rest = uri.as_bytes();
+    while let [first, tail @ ..] = rest {
+        let code = tail.get(..2).and_then(|hex| u8::from_str_radix(std::str::from_utf8(hex).ok()?, 16).ok());
+        match code {
+            Some(byte) if *first == b'%' => {
+                out.push(byte);
+                rest = &tail[2..];
+            }
+            _ => {
+                out.push(*first);
+                rest = tail;
+            }
+        }
+    }
+    String::from_utf8_lossy(&out).into_owned()
 }
 
 /// Extensions a file may require that change nothing we read, or that the reader knows.
@@ -147,17 +170,25 @@ struct Reader {
 }
 
 impl Reader {
-    fn node(&mut self, node: &gltf::Node<'_>, parent: DMat4) -> Result<(), String> {
-        // The format allows only trees; anything else could go round in circles.
-        if std::mem::replace(&mut self.visited[node.index()], true) {
-            return Err(format!("node {} has two parents", node.index()));
+    /// A tree of nodes, as deep as it may be.
+    fn tree(&mut self, root: gltf::Node<'_>) -> Result<(), String> {
+        let mut waiting = vec![(root, DMat4::IDENTITY)];
+        while let Some((node, parent)) = waiting.pop() {
+            // The format allows only trees; anything else could go round in circles.
+            if std::mem::replace(&mut self.visited[node.index()], true) {
+                return Err(format!("node {} has two parents", node.index()));
+            }
+            let own = node.transform().matrix().map(|column| column.map(f64::from));
+            let world = parent * DMat4::from_cols_array_2d(&own);
+            if let Some(mesh) = node.mesh() {
+                self.mesh(&mesh, world)?;
+            }
+            // The last one waiting is next: children in order, before siblings.
+            let first = waiting.len();
+            waiting.extend(node.children().map(|child| (child, world)));
+            waiting[first..].reverse();
         }
-        let own = node.transform().matrix().map(|column| column.map(f64::from));
-        let world = parent * DMat4::from_cols_array_2d(&own);
-        if let Some(mesh) = node.mesh() {
-            self.mesh(&mesh, world)?;
-        }
-        node.children().try_for_each(|child| self.node(&child, world))
+        Ok(())
     }
 
     fn mesh(&mut self, mesh: &gltf::Mesh<'_>, world: DMat4) -> Result<(), String> {
@@ -179,7 +210,7 @@ impl Reader {
         primitive: &gltf::Primitive<'_>,
     ) -> Result<Option<Mesh>, String> {
         if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
-            self.notes.push(format!("points and lines of mesh {} are not drawn", mesh.index()));
+            self.note("points and lines are not drawn");
             return Ok(None);
         }
         for (semantic, accessor) in primitive.attributes() {
@@ -187,6 +218,10 @@ impl Reader {
         }
         if let Some(accessor) = primitive.indices() {
             self.check(&accessor, "indices", &INDEX_TYPES)?;
+        }
+        let material = primitive.material();
+        if material.pbr_metallic_roughness().base_color_texture().is_some() {
+            self.note("textures are not drawn; base colours stand for them");
         }
         let buffers = &self.buffers;
         let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
@@ -210,7 +245,6 @@ impl Reader {
             }
             _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
         };
-        let material = primitive.material();
         let [r, g, b, _] = material.pbr_metallic_roughness().base_color_factor();
         let paint = match reader.read_colors(0) {
             Some(colors) => {
@@ -231,6 +265,13 @@ impl Reader {
         }
         out.check().map_err(|e| format!("mesh {}: {e}", mesh.index()))?;
         Ok(Some(out))
+    }
+
+    /// Once is enough.
+    fn note(&mut self, note: &str) {
+        if !self.notes.iter().any(|n| n == note) {
+            self.notes.push(note.to_owned());
+        }
     }
 
     /// The reader underneath trusts types and lengths; this does not.

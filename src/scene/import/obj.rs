@@ -12,7 +12,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         return Err(fault(Some(line), "this is not text, so no OBJ file".into()));
     }
     // Names and comments may be in any encoding.
-    let text = &String::from_utf8_lossy(bytes);
+    let text = &cleaned(&String::from_utf8_lossy(bytes));
     // The parser underneath computes with indices before it checks them all.
     if let Some(line) = faulty_line(text, bad_index) {
         return Err(fault(Some(line), format!("an index that leads nowhere in '{}'", line_of(text, line))));
@@ -77,11 +77,44 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         });
     }
     let mut notes = notes.into_inner();
+    if materials.iter().any(|m| m.diffuse_texture.is_some()) {
+        notes.push("textures are not drawn; material colours stand for them".into());
+    }
     if !colored {
         mesh.paint_as_clay();
         notes.push("the mesh has no colours; painted in clay by the direction its faces look".into());
     }
     Ok(Imported { mesh, notes })
+}
+
+/// The text without what the parser underneath does not know: a byte order mark, comments behind statements,
+/// lines continued on the next, colours on only some of the vertices. Lines keep their numbers.
+fn cleaned(text: &str) -> String {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lines: Vec<String> = Vec::new();
+    let mut continued: Option<usize> = None;
+    for line in text.lines() {
+        let line = line.split('#').next().unwrap_or_default().trim_end();
+        let (line, goes_on) = line.strip_suffix('\\').map_or((line, false), |l| (l, true));
+        match continued {
+            Some(first) => {
+                lines[first].push(' ');
+                lines[first].push_str(line);
+                lines.push(String::new());
+            }
+            None => lines.push(line.to_owned()),
+        }
+        continued = goes_on.then(|| continued.unwrap_or(lines.len() - 1));
+    }
+    let numbers = |line: &str| line.strip_prefix("v ").map(|rest| rest.split_whitespace().count());
+    let colored = |line: &String| numbers(line).is_some_and(|n| n >= 6);
+    let plain = |line: &String| numbers(line).is_some_and(|n| n < 6);
+    if lines.iter().any(colored) && lines.iter().any(plain) {
+        for line in lines.iter_mut().filter(|l| colored(l)) {
+            *line = line.split_whitespace().take(4).collect::<Vec<_>>().join(" ");
+        }
+    }
+    lines.join("\n") + "\n"
 }
 
 /// A material library without the lines the parser underneath would stumble over: colours that are not three
@@ -180,6 +213,13 @@ mod tests {
             assert!(import_obj(text, "", "bad.obj").is_err(), "{text:?}");
         }
         assert!(parse(&[0xff, 0xfe, 0x00], Path::new("bad.obj"), &|_| Ok(vec![])).is_err());
+    }
+
+    #[test]
+    fn what_other_programs_write_is_read() {
+        let text = "\u{feff}v 0 0 0 # origin\r\nv 1 0 0 1 0 0\r\nv 0 1 \\\r\n0\r\nf 1 2 \\\r\n 3 # all\r\n";
+        let mesh = import_obj(text, "", "a.obj").unwrap().mesh;
+        assert_eq!(mesh.corners(0), [glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y]);
     }
 
     #[test]
