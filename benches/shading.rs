@@ -51,10 +51,21 @@ fn sphere(latitudes: u32) -> Mesh {
     Mesh { one_sided: vec![true; triangles.len()], ..Mesh::new(&vertices, triangles) }
 }
 
-fn map_alone(mesh: &Mesh, map: &ApparentMap, out: &mut [Vec<f64>; 5]) {
-    let [x, y, z, distance, doppler] = out;
-    let rest = Points { x: &mesh.x, y: &mesh.y, z: &mesh.z };
-    map.see_all(rest, PointsMut { x, y, z, distance, doppler });
+/// The vertices alone, halved until every thread has some.
+fn map_alone(map: &ApparentMap, rest: Points<'_, f64>, seen: PointsMut<'_, f64>) {
+    if rest.x.len() < 1 << 14 {
+        return map.see_all(rest, seen);
+    }
+    let half = rest.x.len() / 2;
+    let ((x, x2), (y, y2), (z, z2)) = (rest.x.split_at(half), rest.y.split_at(half), rest.z.split_at(half));
+    let (first, second) = (Points { x, y, z }, Points { x: x2, y: y2, z: z2 });
+    let ((x, x2), (y, y2)) = (seen.x.split_at_mut(half), seen.y.split_at_mut(half));
+    let ((z, z2), (distance, distance2)) = (seen.z.split_at_mut(half), seen.distance.split_at_mut(half));
+    let (doppler, doppler2) = seen.doppler.split_at_mut(half);
+    rayon::join(
+        || map_alone(map, first, PointsMut { x, y, z, distance, doppler }),
+        || map_alone(map, second, PointsMut { x: x2, y: y2, z: z2, distance: distance2, doppler: doppler2 }),
+    );
 }
 
 fn main() {
@@ -106,7 +117,11 @@ fn main() {
                 draw(&seen);
                 let pixels = film.borrow().body.len() as f64;
                 let hit = film.borrow().covered() as f64 / pixels;
-                let map_ms = median_ms(|| map_alone(mesh, &map, &mut points));
+                let map_ms = median_ms(|| {
+                    let [x, y, z, distance, doppler] = &mut points;
+                    let rest = Points { x: &mesh.x, y: &mesh.y, z: &mesh.z };
+                    map_alone(&map, rest, PointsMut { x, y, z, distance, doppler });
+                });
                 let cut_ms = median_ms(|| drop(std::hint::black_box(cut())));
                 let draw_ms = median_ms(|| draw(&seen));
                 let whole = median_ms(|| draw(&cut()));
