@@ -1,0 +1,84 @@
+//! What a scene file may hold, key by key.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use toml::Spanned;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneFile {
+    pub camera: Option<CameraTable>,
+    #[serde(default)]
+    pub body: Vec<BodyTable>,
+    #[serde(default)]
+    pub material: BTreeMap<String, MaterialTable>,
+}
+
+pub(super) type Vector = Spanned<[f64; 3]>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CameraTable {
+    pub time: Option<Spanned<f64>>,
+    pub position: Option<Vector>,
+    pub look_at: Option<Vector>,
+    pub forward: Option<Vector>,
+    pub up: Option<Vector>,
+    pub velocity: Option<Vector>,
+    pub celerity: Option<Vector>,
+    pub beta: Option<Spanned<f64>>,
+    pub gamma: Option<Spanned<f64>>,
+    pub rapidity: Option<Spanned<f64>>,
+    pub direction: Option<Vector>,
+    pub projection: Option<Spanned<String>>,
+    pub fov_deg: Option<Spanned<f64>>,
+    pub size: Option<Spanned<[u32; 2]>>,
+    pub nearest: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BodyTable {
+    pub name: Option<String>,
+    pub mesh: Spanned<String>,
+    pub time: Option<Spanned<f64>>,
+    pub position: Option<Vector>,
+    pub velocity: Option<Vector>,
+    pub celerity: Option<Vector>,
+    pub beta: Option<Spanned<f64>>,
+    pub gamma: Option<Spanned<f64>>,
+    pub rapidity: Option<Spanned<f64>>,
+    pub direction: Option<Vector>,
+    pub rotation: Option<RotationTable>,
+    pub scale: Option<Spanned<Scale>>,
+    pub material: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RotationTable {
+    pub axis: Vector,
+    pub angle_deg: Spanned<f64>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Scale {
+    Same(f64),
+    Each([f64; 3]),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MaterialTable {
+    pub color: Spanned<Color>,
+}
+
+#[derive(Clone, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Color {
+    /// Linear sRGB.
+    Linear([f32; 3]),
+    /// #rrggbb, sRGB as in a browser.
+    Hex(String),
+}
