@@ -77,6 +77,9 @@ impl ApparentMesh {
         if map.speed() == 0.0 {
             return Ok(Self::linear(mesh, map));
         }
+        let sky = map.rest_sky();
+        let ahead = DVec3::Z - DVec3::Z.dot(sky.axis()) * sky.axis();
+        let forward = map.rotate_back(ahead + sky.boosted(DVec3::Z, 1.0).along * sky.axis());
         let made = AtomicUsize::new(0);
         let fault = TooManyPieces { tolerance: how.tolerance, most: how.most };
         let own = vertices.len() as u32;
@@ -94,6 +97,7 @@ impl ApparentMesh {
                     out: Chunk::default(),
                     own,
                     sides: Vec::new(),
+                    forward,
                 };
                 let faces = chunk * size..((chunk + 1) * size).min(mesh.triangles.len());
                 faces.into_iter().try_for_each(|face| cutter.cut(face)).map(|()| cutter.out).ok_or(fault)
@@ -208,6 +212,8 @@ struct Cutter<'a> {
     /// How many vertices the mesh has of its own.
     own: u32,
     sides: Vec<Corner>,
+    /// The middle of the picture, as a direction of the rest frame.
+    forward: DVec3,
 }
 
 impl Cutter<'_> {
@@ -374,13 +380,15 @@ impl Cutter<'_> {
         Some(())
     }
 
-    /// A triangle whose three sides look straight, unless it bulges between them: then it gets a corner in its
-    /// middle.
+    /// A triangle whose three sides look straight, unless it is elsewhere between them: then it gets a corner
+    /// there.
     fn leaf(&mut self, face: u32, corners: [Corner; 3], depth: u32) -> Option<()> {
-        if depth < DEEPEST && self.bulges(&corners) {
+        if depth < DEEPEST
+            && let Some([u, v, w]) = self.weakest_point(&corners)
+        {
             let [a, b, c] = corners;
-            let weights = [0, 1].map(|i| (a.weights[i] + b.weights[i] + c.weights[i]) / 3.0);
-            let middle = self.vertex((a.rest + b.rest + c.rest) / 3.0, weights);
+            let weights = [0, 1].map(|i| u * a.weights[i] + v * b.weights[i] + w * c.weights[i]);
+            let middle = self.vertex(u * a.rest + v * b.rest + w * c.rest, weights);
             let kept = self.sides.len();
             let spokes = corners.map(|corner| self.inner_side(middle, corner));
             for i in 0..3 {
@@ -402,22 +410,51 @@ impl Cutter<'_> {
         self.count(1)
     }
 
-    /// Whether the middle of a flat apparent triangle is off by more than a surface may be: the error is along
-    /// the motion and exactly γβ(mean of the corners' r′ − r′ of the middle).
-    fn bulges(&self, corners: &[Corner; 3]) -> bool {
-        let [a, b, c] = corners.map(|c| self.map.offset_rest(c.rest));
-        let middle = (a + b + c) / 3.0;
-        let at_middle = middle.length();
-        let excess = (a.length() + b.length() + c.length()) / 3.0 - at_middle;
-        if at_middle == 0.0 {
-            return excess > 0.0;
+    /// Where a flat apparent triangle is off by more than a surface may be: at its middle, at its point nearest to
+    /// the observer, where it is met looking along the motion (there aberration spreads a small part of the rest
+    /// sky over most of ours), or in the middle of the picture. Barycentric coordinates of the worst; none if
+    /// all is well.
+    ///
+    /// The error is along the motion and exactly γβ(Σ λᵢ r′ᵢ − r′). A flat triangle that shows its other side
+    /// (the map keeps facing) surrounds the observer wrongly, and is cut already for a tenth of that.
+    fn weakest_point(&self, corners: &[Corner; 3]) -> Option<[f64; 3]> {
+        const TURNED: f64 = 0.1;
+        let offsets = corners.map(|c| self.map.offset_rest(c.rest));
+        let [a, b, c] = offsets;
+        let normal = (b - a).cross(c - a);
+        let height = normal.dot(a);
+        let inside = |direction: DVec3| {
+            let at = direction * (height / normal.dot(direction));
+            let [p, q, r] = offsets.map(|o| o - at);
+            let weights =
+                [q.cross(r), r.cross(p), p.cross(q)].map(|area| area.dot(normal) / normal.length_squared());
+            let held = at.dot(direction) > 0.0 && weights.iter().all(|w| *w > 1e-6 && *w < 1.0);
+            held.then_some(weights)
+        };
+        let axis = self.map.axis_rest();
+        let points =
+            [Some([1.0 / 3.0; 3]), inside(normal * height.signum()), inside(axis), inside(self.forward)];
+        let worst = points.into_iter().flatten().map(|w| (self.excess(corners, &offsets, w), w));
+        let (excess, weights) = worst.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let seen = corners.map(|c| self.map.see(c.rest).position);
+        // The observer's axes are left-handed.
+        let turned = seen[0].dot(seen[1].cross(seen[2])) * height > 0.0;
+        (excess > if turned { TURNED } else { 1.0 }).then_some(weights)
+    }
+
+    /// How far a point of the flat triangle is from where it is seen, over what is allowed there.
+    fn excess(&self, corners: &[Corner; 3], offsets: &[DVec3; 3], weights: [f64; 3]) -> f64 {
+        let mix = |v: [DVec3; 3]| weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2];
+        let flat: f64 = (0..3).map(|i| weights[i] * offsets[i].length()).sum();
+        let at = mix(*offsets).length();
+        if at == 0.0 {
+            return if flat > 0.0 { f64::INFINITY } else { 0.0 };
         }
-        let rest = corners[0].rest + corners[1].rest + corners[2].rest;
-        let sight = self.map.see(rest / 3.0);
+        let sight = self.map.see(mix(corners.map(|c| c.rest)));
         let n = sight.position / sight.distance;
-        let off = self.map.speed() * excess / (sight.doppler.max(1.0) * sight.distance);
+        let off = self.map.speed() * (flat - at) / (sight.doppler.max(1.0) * sight.distance);
         // A triangle's middle is off by 4/3 of what its sides are.
         let allowed = self.field.tolerance_at(n, 4.0 / 3.0 * self.surface_tolerance());
-        off * self.field.focal() * self.field.scale(n) > allowed
+        off * self.field.focal() * self.field.scale(n) / allowed
     }
 }
