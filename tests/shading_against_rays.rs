@@ -193,3 +193,62 @@ fn near_light_speed() {
 fn at_gamma_of_hundreds() {
     compare(4, 300.0, 40);
 }
+
+/// A wall from so near that it fills half the sky or more, at speeds that squeeze its edges into a point behind or
+/// spread a speck of it over everything.
+#[test]
+fn a_wall_close_by() {
+    let mut random = Random(5);
+    let wall = Arc::new(Mesh::new(
+        &[
+            DVec3::new(-1.0, -1.0, 0.0),
+            DVec3::new(1.0, -1.0, 0.0),
+            DVec3::new(1.0, 1.0, 0.0),
+            DVec3::new(-1.0, 1.0, 0.0),
+        ],
+        vec![[0, 1, 2], [0, 2, 3]],
+    ));
+    let (mut compared, mut hits) = (0, 0);
+    for number in 0..150 {
+        let speed = 200f64.powf(random.unit());
+        let celerity = Celerity::new(random.point(1.0).normalize() * speed).unwrap();
+        let height = 1e-3f64.powf(random.unit());
+        // The camera, at the world's origin, is before this point of the wall in its rest frame.
+        let before = DVec3::new(random.unit() - 0.5, random.unit() - 0.5, height);
+        let world = Lorentz::<World, Rest>::boost(&celerity) * FourVector::from_parts(0.0, before);
+        let motion = Motion { celerity, origin: Event::origin() + (-world) };
+        let projection = [Projection::Pinhole, Projection::Fisheye, Projection::Panorama][number % 3];
+        let view = View {
+            aim: Aim::Forward(random.point(1.0)),
+            up: random.point(1.0),
+            projection,
+            size: [32, 24],
+            ..View::default()
+        };
+        let bodies = vec![Body { name: "wall".into(), mesh: wall.clone(), motion }];
+        let scene = Scene { name: "wall".into(), bodies, view, notes: Vec::new() };
+        let camera = scene.camera().unwrap();
+        let (film, _) = render(&scene, &camera, &Options::default(), |_| ()).unwrap();
+        let tracer = Tracer::new(&scene, &camera);
+        for i in 0..film.body.len() {
+            let centre = DVec2::new((i % 32) as f64 + 0.5, (i / 32) as f64 + 0.5);
+            let hit = |dx: f64, dy: f64| {
+                let direction = camera.lens.direction(centre + DVec2::new(dx, dy))?;
+                Some(tracer.cast(direction).0.is_some())
+            };
+            let Some(expected) = hit(0.0, 0.0) else { continue };
+            let around = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+            if around.into_iter().all(|(dx, dy)| hit(dx, dy) == Some(expected)) {
+                compared += 1;
+                hits += usize::from(expected);
+                assert_eq!(
+                    film.body[i] == 0,
+                    expected,
+                    "scene {number}, γβ {speed}, {height} away, {projection}, {centre}"
+                );
+            }
+        }
+    }
+    println!("{compared} pixels compared, {hits} hits");
+    assert!(hits > 10_000);
+}

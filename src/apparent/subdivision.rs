@@ -44,9 +44,18 @@ pub struct TooManyPieces {
     pub most: usize,
 }
 
-/// Halvings of a triangle; 2⁸⁰ pieces are never needed, but a triangle within rounding noise of the observer
-/// would go on for ever.
-const DEEPEST: u32 = 80;
+/// How often a triangle has been cut on the way to a piece.
+#[derive(Clone, Copy, Default)]
+struct Depth {
+    /// Halvings of sides: a handful for each doubling of the pieces.
+    halvings: u32,
+    /// Corners put inside: each takes most of what is wrong, but beside a side of rounding noise it goes on.
+    inner: u32,
+}
+
+impl Depth {
+    const MOST: Self = Self { halvings: 400, inner: 14 };
+}
 
 /// The most triangles a task works on at once; few large ones are shared out singly.
 const CHUNK: usize = 256;
@@ -249,7 +258,7 @@ impl Cutter<'_> {
         if unreachable || least / (8.0 * WARP) > self.how.most as f64 {
             return None;
         }
-        self.split(face as u32, corners, sides, 0)
+        self.split(face as u32, corners, sides, Depth::default())
     }
 
     /// A bound that needs no trigonometry: the edge surely looks straight.
@@ -357,33 +366,38 @@ impl Cutter<'_> {
 
     /// Halves the longest side still to be cut, joins the cut to the opposite corner, and goes on with the two
     /// halves.
-    fn split(&mut self, face: u32, corners: [Corner; 3], sides: [Side; 3], depth: u32) -> Option<()> {
+    fn split(&mut self, face: u32, corners: [Corner; 3], sides: [Side; 3], depth: Depth) -> Option<()> {
         let most = (0..3)
             .filter(|&i| sides[i].pieces > 1)
             .max_by(|&i, &j| sides[i].extent().total_cmp(&sides[j].extent()));
-        let Some(most) = most.filter(|_| depth < DEEPEST) else { return self.leaf(face, corners, depth) };
+        let Some(most) = most.filter(|_| depth.halvings < Depth::MOST.halvings) else {
+            return self.leaf(face, corners, depth);
+        };
         let pieces = sides[most].pieces;
-        if pieces > 2 && depth % 2 == 1 && self.misses_picture(&corners.map(|c| self.map.offset_rest(c.rest)))
+        if pieces > 2
+            && depth.halvings % 2 == 1
+            && self.misses_picture(&corners.map(|c| self.map.offset_rest(c.rest)))
         {
             return Some(());
         }
 
+        let deeper = Depth { halvings: depth.halvings + 1, ..depth };
         let half = pieces / 2;
         let [a, b, c] = [corners[most], corners[(most + 1) % 3], corners[(most + 2) % 3]];
         let [ab, bc, ca] = [sides[most], sides[(most + 1) % 3], sides[(most + 2) % 3]];
         let middle = self.sides[ab.node(half)];
         let kept = self.sides.len();
         let across = self.inner_side(middle, c);
-        self.split(face, [a, middle, c], [ab.part(0, half), across, ca], depth + 1)?;
-        self.split(face, [middle, b, c], [ab.part(half, pieces), bc, across.turned()], depth + 1)?;
+        self.split(face, [a, middle, c], [ab.part(0, half), across, ca], deeper)?;
+        self.split(face, [middle, b, c], [ab.part(half, pieces), bc, across.turned()], deeper)?;
         self.sides.truncate(kept);
         Some(())
     }
 
     /// A triangle whose three sides look straight, unless it is elsewhere between them: then it gets a corner
     /// there.
-    fn leaf(&mut self, face: u32, corners: [Corner; 3], depth: u32) -> Option<()> {
-        if depth < DEEPEST
+    fn leaf(&mut self, face: u32, corners: [Corner; 3], depth: Depth) -> Option<()> {
+        if depth.inner < Depth::MOST.inner
             && let Some([u, v, w]) = self.weakest_point(&corners)
         {
             let [a, b, c] = corners;
@@ -398,7 +412,7 @@ impl Cutter<'_> {
                     face,
                     [middle, corners[i], corners[j]],
                     [spokes[i], rim, spokes[j].turned()],
-                    depth + 6,
+                    Depth { inner: depth.inner + 1, ..depth },
                 )?;
             }
             self.sides.truncate(kept);
