@@ -173,7 +173,7 @@ fn the_users_mistakes_are_explained() {
         (&["render", "cube", "--json", "no/such.json"], &["no/such.json"]),
         (&["render", "cube", "--json", "."], &["directory"]),
         (&["render", "cube", "--json", "/proc/a.json"], &["/proc/a.json"]),
-        (&["render", "cube", "-o", "a.png", "--json", "a.png"], &["both"]),
+        (&["render", "cube", "-o", "a.png", "--json", "./a.png", "--size", "8x8"], &["both"]),
         (&["render", "cub"], &["'cube'"]),
         (&["render", "no.obj"], &["no.obj"]),
         (&["render", "no.toml"], &["no.toml"]),

@@ -97,9 +97,6 @@ impl Render {
         for path in [Some(&output), self.json.as_ref()].into_iter().flatten() {
             check_target(path)?;
         }
-        if self.json.as_ref() == Some(&output) {
-            return Err(format!("{} cannot be both the picture and the JSON", output.display()).into());
-        }
         let options = Options {
             tolerance: self.tolerance,
             samples: self.samples,
@@ -123,6 +120,10 @@ impl Render {
             Some(path) if !json_to_stdout => {
                 // Both or none.
                 let json = picture::prepare(path, |to| writeln!(to, "{:#}", done.summary()))?;
+                let plain = json.path().is_file() || !json.path().exists();
+                if plain && json.path() == picture.path() {
+                    return Err(format!("{} cannot be both the picture and the JSON", path.display()).into());
+                }
                 picture.finish()?;
                 json.finish()?;
             }

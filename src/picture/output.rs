@@ -71,12 +71,15 @@ pub fn prepare(
         let mut writer = BufWriter::new(file);
         contents(&mut writer).and_then(|()| writer.flush())
     };
-    // Where a link leads, if there is anything.
-    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    if target.exists() && !target.is_file() {
+    let target = resolved(path).map_err(&fault)?;
+    let there = target.metadata().ok();
+    if there.as_ref().is_some_and(|m| !m.is_file()) {
         let mut device = std::fs::OpenOptions::new().write(true).open(&target).map_err(&fault)?;
         fill(&mut device).map_err(&fault)?;
         return Ok(Pending { path: target, file: None });
+    }
+    if there.as_ref().is_some_and(|m| m.permissions().readonly()) {
+        return Err(fault(std::io::Error::other("it is there already, and read-only")));
     }
     let folder = match target.parent() {
         Some(parent) if parent != Path::new("") => parent,
@@ -92,12 +95,36 @@ pub fn prepare(
     };
     #[cfg(unix)]
     builder.permissions(everyone);
-    let mut file = builder.tempfile_in(folder).map_err(&fault)?;
+    // The temporary name would only puzzle.
+    let mut file = builder.tempfile_in(folder).map_err(|e| fault(e.kind().into()))?;
     fill(file.as_file_mut()).map_err(&fault)?;
+    if let Some(there) = there {
+        file.as_file().set_permissions(there.permissions()).map_err(&fault)?;
+    }
     Ok(Pending { path: target, file: Some(file) })
 }
 
+/// The one name a file has: links followed, folders resolved.
+fn resolved(path: &Path) -> std::io::Result<PathBuf> {
+    if path.exists() {
+        return path.canonicalize();
+    }
+    if path.is_symlink() {
+        return Err(std::io::Error::other("it is a link that leads nowhere"));
+    }
+    let folder = match path.parent() {
+        Some(parent) if parent != Path::new("") => parent.canonicalize()?,
+        _ => Path::new(".").canonicalize()?,
+    };
+    Ok(folder.join(path.file_name().unwrap_or_default()))
+}
+
 impl Pending {
+    /// Where it will be.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Gives the file its name, over whatever had it.
     ///
     /// # Errors

@@ -153,6 +153,19 @@ impl ApparentMap {
 
     /// Where a rest-frame point is seen.
     pub fn see(&self, x_rest: DVec3) -> Sight {
+        if self.speed == 0.0 {
+            let offset = self.offset_rest(x_rest);
+            let length = offset.length();
+            let cosine = offset.x / length;
+            return Sight {
+                position: if self.rotates { self.rotate(offset) } else { offset },
+                distance: length,
+                doppler: if length > 0.0 { 1.0 } else { f64::NAN },
+                rest_distance: length,
+                cos_theta_rest: cosine,
+                cos_theta_observer: cosine,
+            };
+        }
         Sight::from_seen(&if self.rotates {
             kernel::see::<f64, Halved, true>(&self.f64, x_rest.into())
         } else {

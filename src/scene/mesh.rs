@@ -52,6 +52,9 @@ pub enum MeshError {
         /// What was found.
         position: String,
     },
+    /// A colour that is NaN or infinite.
+    #[error("a colour is not a finite number")]
+    BadColor,
     /// So small that areas vanish.
     #[error("the mesh is less than 1e-50 across; scale it up")]
     TooSmall,
@@ -236,6 +239,14 @@ impl Mesh {
             if found != 0 && found != needed {
                 return Err(MeshError::BadAttribute { what, found, needed });
             }
+        }
+        let finite = |colors: &[[f32; 3]]| colors.iter().flatten().all(|c| c.is_finite());
+        let all_finite = match &self.paint {
+            Paint::Uniform(color) => finite(&[*color]),
+            Paint::Faces(colors) | Paint::Vertices(colors) => finite(colors),
+        };
+        if !all_finite {
+            return Err(MeshError::BadColor);
         }
         let (found, needed) = match &self.paint {
             Paint::Uniform(_) => (0, 0),

@@ -12,7 +12,9 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         return Err(fault(Some(line), "this is not text, so no OBJ file".into()));
     }
     // Names and comments may be in any encoding.
-    let text = &cleaned(&String::from_utf8_lossy(bytes));
+    let original = String::from_utf8_lossy(bytes);
+    let (text, half_colored) = cleaned(&original);
+    let text = &text;
     // The parser underneath computes with indices before it checks them all.
     if let Some(line) = faulty_line(text, bad_index) {
         return Err(fault(Some(line), format!("an index that leads nowhere in '{}'", line_of(text, line))));
@@ -23,7 +25,10 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     let load_materials = |library: &Path| {
         let library = beside(path, library);
         match read(&library) {
-            Ok(bytes) => tobj::load_mtl_buf(&mut without_odd_colors(&bytes).as_bytes()),
+            Ok(bytes) => {
+                let (library, _) = cleaned(&String::from_utf8_lossy(&bytes));
+                tobj::load_mtl_buf(&mut without_odd_colors(&library).as_bytes())
+            }
             Err(e) => {
                 notes.borrow_mut().push(format!("no material colours: {e}"));
                 Err(tobj::LoadError::OpenFileFailed)
@@ -80,6 +85,9 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     if materials.iter().any(|m| m.diffuse_texture.is_some()) {
         notes.push("textures are not drawn; material colours stand for them".into());
     }
+    if half_colored {
+        notes.push("only some vertices have colours; they are left out".into());
+    }
     if !colored {
         mesh.paint_as_clay();
         notes.push("the mesh has no colours; painted in clay by the direction its faces look".into());
@@ -89,7 +97,9 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
 
 /// The text without what the parser underneath does not know: a byte order mark, comments behind statements,
 /// lines continued on the next, colours on only some of the vertices. Lines keep their numbers.
-fn cleaned(text: &str) -> String {
+///
+/// Also says whether colours were taken off.
+fn cleaned(text: &str) -> (String, bool) {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines: Vec<String> = Vec::new();
     let mut continued: Option<usize> = None;
@@ -106,21 +116,24 @@ fn cleaned(text: &str) -> String {
         }
         continued = goes_on.then(|| continued.unwrap_or(lines.len() - 1));
     }
-    let numbers = |line: &str| line.strip_prefix("v ").map(|rest| rest.split_whitespace().count());
+    let numbers = |line: &str| {
+        let mut words = line.split_whitespace();
+        (words.next() == Some("v")).then(|| words.count())
+    };
     let colored = |line: &String| numbers(line).is_some_and(|n| n >= 6);
     let plain = |line: &String| numbers(line).is_some_and(|n| n < 6);
-    if lines.iter().any(colored) && lines.iter().any(plain) {
+    let half_colored = lines.iter().any(colored) && lines.iter().any(plain);
+    if half_colored {
         for line in lines.iter_mut().filter(|l| colored(l)) {
             *line = line.split_whitespace().take(4).collect::<Vec<_>>().join(" ");
         }
     }
-    lines.join("\n") + "\n"
+    (lines.join("\n") + "\n", half_colored)
 }
 
 /// A material library without the lines the parser underneath would stumble over: colours that are not three
 /// numbers (MTL has others, `Kd spectral …`).
-fn without_odd_colors(bytes: &[u8]) -> String {
-    let text = String::from_utf8_lossy(bytes);
+fn without_odd_colors(text: &str) -> String {
     let good = |line: &&str| {
         let mut words = line.split_whitespace();
         let is_color = words.next().is_some_and(|keyword| matches!(keyword, "Ka" | "Kd" | "Ks" | "Ke"));
