@@ -11,7 +11,7 @@ use super::{
 };
 use crate::relativity::Motion;
 use glam::{DAffine3, DQuat, DVec3};
-use source::{Source, VelocityKeys, did_you_mean, explain};
+use source::{Source, VelocityKeys, did_you_mean, explain, velocity_keys};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -72,17 +72,9 @@ fn read_camera(source: &Source<'_>, table: &CameraTable) -> Result<View, SceneEr
         (None, Some(forward)) => Aim::Forward(source.vector("forward", forward)?),
         (None, None) => usual.aim,
     };
-    let keys = VelocityKeys {
-        velocity: &table.velocity,
-        celerity: &table.celerity,
-        beta: &table.beta,
-        gamma: &table.gamma,
-        rapidity: &table.rapidity,
-        direction: &table.direction,
-    };
     Ok(View {
         event: source.event(&table.time, &table.position)?,
-        celerity: source.celerity(&keys)?,
+        celerity: source.celerity(&velocity_keys!(table))?,
         aim,
         up: table.up.as_ref().map_or(Ok(usual.up), |u| source.vector("up", u))?,
         projection,
@@ -192,16 +184,10 @@ fn read_body(
         mesh = mesh.placed(&DAffine3::from_scale_rotation_translation(scale, rotation, DVec3::ZERO));
         mesh.check().map_err(|e| source.at(&table.mesh, e))?;
     }
-    let keys = VelocityKeys {
-        velocity: &table.velocity,
-        celerity: &table.celerity,
-        beta: &table.beta,
-        gamma: &table.gamma,
-        rapidity: &table.rapidity,
-        direction: &table.direction,
+    let motion = Motion {
+        celerity: source.celerity(&velocity_keys!(table))?,
+        origin: source.event(&table.time, &table.position)?,
     };
-    let motion =
-        Motion { celerity: source.celerity(&keys)?, origin: source.event(&table.time, &table.position)? };
     let stem = Path::new(mesh_name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let name = table.name.clone().unwrap_or(if index == 0 { stem } else { format!("{stem}{index}") });
     Ok(Body { name, mesh: Arc::new(mesh), motion })

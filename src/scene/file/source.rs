@@ -36,6 +36,21 @@ pub(super) struct VelocityKeys<'a> {
     pub direction: &'a Option<Vector>,
 }
 
+/// The velocity keys of a table: cameras and bodies have the same ones.
+macro_rules! velocity_keys {
+    ($table:expr) => {
+        VelocityKeys {
+            velocity: &$table.velocity,
+            celerity: &$table.celerity,
+            beta: &$table.beta,
+            gamma: &$table.gamma,
+            rapidity: &$table.rapidity,
+            direction: &$table.direction,
+        }
+    };
+}
+pub(super) use velocity_keys;
+
 pub(super) struct Source<'a> {
     pub text: &'a str,
     pub path: &'a Path,
