@@ -11,7 +11,7 @@ use terrell::film::Film;
 use terrell::geodesic::{Celerity, Event, Tetrad};
 use terrell::raster::{Drawable, Samples, shade_again};
 use terrell::relativity::{ApparentMap, Motion, Points, PointsMut};
-use terrell::scene::{Lens, Mesh, Projection, shapes};
+use terrell::scene::{Lens, Material, Mesh, Projection, shapes};
 
 const REPEATS: usize = 9;
 
@@ -48,7 +48,10 @@ fn sphere(latitudes: u32) -> Mesh {
             triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
         }
     }
-    Mesh { one_sided: vec![true; triangles.len()], ..Mesh::new(&vertices, triangles) }
+    Mesh {
+        materials: vec![Material { one_sided: true, ..Material::default() }],
+        ..Mesh::new(&vertices, triangles)
+    }
 }
 
 /// The vertices alone, halved until every thread has some.

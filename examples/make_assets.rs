@@ -38,7 +38,7 @@ fn obj(name: &str, mesh: &Mesh) -> (String, String) {
             writeln!(obj, "f {a} {b} {c}").unwrap();
             continue;
         }
-        let color = mesh.paint.at(t, *corners, [1.0, 0.0, 0.0]);
+        let color = mesh.color(t, [1.0, 0.0, 0.0], |_| [1.0; 3]);
         let key = color.map(|c| (c * 1e4).round() as u32);
         let next = materials.len();
         let material = *materials.entry(key).or_insert_with(|| {

@@ -51,6 +51,14 @@ pub fn linear(encoded: u8) -> f32 {
     if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
+/// The 8-bit sRGB component of a linear value, clipped to 0 … 1; 0 for NaN.
+pub fn encoded(linear: f32) -> u8 {
+    // A cast of NaN is 0.
+    let v = linear.clamp(0.0, 1.0);
+    let encoded = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+    (255.0 * encoded + 0.5) as u8
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,5 +72,15 @@ mod tests {
         assert_eq!(at(1e9), at(32.0));
         assert_eq!(at(1e-9), at(1.0 / 32.0));
         assert_eq!(Coloring::Geometry.light([0.1, 0.2, 0.3], 7.0), [0.1, 0.2, 0.3]);
+    }
+
+    #[test]
+    fn srgb_there_and_back() {
+        for v in 0..=255u8 {
+            assert_eq!(encoded(linear(v)), v);
+        }
+        assert_eq!(encoded(f32::NAN), 0);
+        assert_eq!(encoded(7.0), 255);
+        assert_eq!(encoded(-1.0), 0);
     }
 }

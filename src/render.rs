@@ -5,7 +5,8 @@ use crate::color::Coloring;
 use crate::film::Film;
 use crate::raster::{Drawable, Samples, shade};
 use crate::relativity::ApparentMap;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Mesh, Scene};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How to draw.
@@ -63,7 +64,7 @@ pub fn render(
     mut step: impl FnMut(Step),
 ) -> Result<(Film, Report), TooManyPieces> {
     let field = Field::new(&camera.lens);
-    let pieces = |(_, mesh): &(ApparentMap, ApparentMesh)| mesh.triangles.len();
+    let pieces = |(_, _, seen): &(ApparentMap, Arc<Mesh>, ApparentMesh)| seen.triangles.len();
     let start = Instant::now();
     let mut seen = Vec::with_capacity(scene.bodies.len());
     for (index, body) in scene.bodies.iter().enumerate() {
@@ -72,18 +73,14 @@ pub fn render(
         let left = options.most_pieces - seen.iter().map(pieces).sum::<usize>();
         let how = Subdivision { tolerance: options.tolerance, most: left };
         let fault = |e| TooManyPieces { most: options.most_pieces, ..e };
-        let mesh = ApparentMesh::new(&body.mesh, &map, &field, &how).map_err(fault)?;
-        seen.push((map, mesh));
+        let mesh = body.mesh_seen(&camera.observer);
+        let apparent = ApparentMesh::new(&mesh, &map, &field, &how).map_err(fault)?;
+        seen.push((map, mesh, apparent));
     }
     let cut = Instant::now();
     step(Step::Drawing);
-    let drawables: Vec<_> = scene
-        .bodies
-        .iter()
-        .zip(&seen)
-        .enumerate()
-        .map(|(body, (source, (map, seen)))| Drawable { body, mesh: &source.mesh, map, seen })
-        .collect();
+    let drawables: Vec<_> =
+        seen.iter().enumerate().map(|(body, (map, mesh, seen))| Drawable { body, mesh, map, seen }).collect();
     let film = shade(&drawables, &camera.lens, &Samples::new(options.samples), options.coloring);
     let report = Report {
         triangles: scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum(),

@@ -8,7 +8,8 @@ use proptest::prelude::*;
 use std::path::Path;
 use terrell::geodesic::{Celerity, Event, Tetrad};
 use terrell::relativity::{ApparentMap, Motion};
-use terrell::scene::{View, framed, import, import_obj, parse_scene};
+use terrell::render::{Options, render};
+use terrell::scene::{Imported, Lens, Projection, View, authored, framed, import, import_obj, parse_scene};
 
 const OBJ: &str = "# a comment\nmtllib a.mtl\no thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\ng part\nusemtl red\ns 1\nf 1/1/1 2/2/1 3/3/1 4/1/1\nf -5 -4 -1\nf 1//1 3//1 5//1\nl 1 2\np 1\n";
 const MTL: &str = "newmtl red\nKd 0.8 0.1 0.1\nKe 0 0 0\nd 1\nillum 2\n";
@@ -123,12 +124,17 @@ fn damaged(mut bytes: Vec<u8>, damages: &[Damage]) -> Vec<u8> {
 }
 
 /// What can be read can be looked at.
-fn look_at(mesh: terrell::scene::Mesh) {
+fn look_at(imported: Imported) {
     let view = View { size: [16, 12], ..View::default() };
-    let scene = framed("m", mesh, Celerity::new(glam::DVec3::X).unwrap(), view, vec![]);
-    if let Ok(camera) = scene.camera() {
-        let options = terrell::render::Options { tolerance: 1.0, most_pieces: 10_000, ..Default::default() };
-        let _ = terrell::render::render(&scene, &camera, &options, |_| ());
+    let own = authored("m", imported.clone(), None, view.clone());
+    let passing = framed("m", imported, Celerity::new(glam::DVec3::X).unwrap(), view);
+    for scene in [own, passing] {
+        let _ = scene.check_animations();
+        if let Ok(mut camera) = scene.camera() {
+            camera.lens = Lens::new(Projection::Pinhole, 60.0, 16, 12).unwrap();
+            let options = Options { tolerance: 1.0, most_pieces: 10_000, ..Default::default() };
+            let _ = render(&scene, &camera, &options, |_| ());
+        }
     }
 }
 
@@ -139,13 +145,13 @@ fn the_undamaged_files_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glb");
     std::fs::write(&path, glb()).unwrap();
-    let mesh = import(&path).unwrap().mesh;
+    let mesh = import(&path).unwrap().into_mesh();
     assert_eq!(mesh.triangles.len(), 1);
     assert_eq!(mesh.corners(0)[1], glam::DVec3::new(2.0, 2.0, 3.0));
     std::fs::write(folder.path().join("a.bin"), binary()).unwrap();
     let path = folder.path().join("a.gltf");
     std::fs::write(&path, gltf(",\"uri\":\"a.bin\"")).unwrap();
-    assert_eq!(import(&path).unwrap().mesh, mesh);
+    assert_eq!(import(&path).unwrap().into_mesh(), mesh);
 }
 
 proptest! {
@@ -159,7 +165,7 @@ proptest! {
             (String::from_utf8_lossy(&damaged(OBJ.into(), &damages)).into_owned(), MTL.to_owned())
         };
         if let Ok(imported) = import_obj(&obj, &mtl, "a.obj") {
-            look_at(imported.mesh);
+            look_at(imported);
         }
     }
 
@@ -179,7 +185,7 @@ proptest! {
         let whole = if as_binary { glb() } else { gltf(",\"uri\":\"a.bin\"").into_bytes() };
         std::fs::write(&path, damaged(whole, &damages)).unwrap();
         if let Ok(imported) = import(&path) {
-            look_at(imported.mesh);
+            look_at(imported);
         }
     }
 

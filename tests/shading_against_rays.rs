@@ -104,7 +104,7 @@ fn random_scene(random: &mut Random, fastest: f64) -> Scene {
                 celerity: celerity(random),
                 origin: Event::at(random.unit() - 0.5, random.point(4.0)),
             };
-            Body { name: i.to_string(), mesh: Arc::new(mesh), motion }
+            Body { name: i.to_string(), mesh: Arc::new(mesh), motion, clip: None }
         })
         .collect();
     let projection = [Projection::Pinhole, Projection::Pinhole, Projection::Fisheye, Projection::Panorama];
@@ -225,7 +225,7 @@ fn a_wall_close_by() {
             size: [32, 24],
             ..View::default()
         };
-        let bodies = vec![Body { name: "wall".into(), mesh: wall.clone(), motion }];
+        let bodies = vec![Body { name: "wall".into(), mesh: wall.clone(), motion, clip: None }];
         let scene = Scene { name: "wall".into(), bodies, view, notes: Vec::new() };
         let camera = scene.camera().unwrap();
         let (film, _) = render(&scene, &camera, &Options::default(), |_| ()).unwrap();

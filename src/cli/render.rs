@@ -40,6 +40,9 @@ pub struct Render {
     /// Take the picture when a body appears abreast: "nearest BODY"
     #[arg(long, value_name = "\"nearest BODY\"", value_parser = when)]
     when: Option<String>,
+    /// Seconds of a file's own animation that pass in a unit of time; 0 stops it
+    #[arg(long, value_name = "R", value_parser = number)]
+    animation_rate: Option<f64>,
     /// Pixels
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
@@ -156,7 +159,9 @@ impl Render {
 
     /// The scene, with what the flags say over what it says itself.
     fn scene(&self) -> Result<Scene, Fault> {
-        let mut scene = source::open(&self.scene, self.velocity.speed()?, |view| self.set_lens(view))?;
+        let mut scene = source::open(&self.scene, self.velocity.speed()?, self.animation_rate, |view| {
+            self.set_lens(view)
+        })?;
         let view = &mut scene.view;
         if let Some(time) = self.time {
             view.set_time(time)?;

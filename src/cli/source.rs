@@ -2,14 +2,25 @@ use super::Fault;
 use super::velocity::of_resting;
 use std::path::Path;
 use terrell::geodesic::Celerity;
-use terrell::scene::{Scene, Speed, View, builtin_scenes, framed, import, is_mesh_file, parse_scene};
+use terrell::scene::{
+    Scene, Speed, View, authored, builtin_scenes, framed, import, is_mesh_file, parse_scene,
+};
 
 /// SCENE on the command line: the name of a scene that ships, a TOML file, or a mesh.
 ///
 /// `lens` sets what the flags say of the lens and the size of the picture.
-pub fn open(source: &str, speed: Option<Speed>, lens: impl Fn(&mut View)) -> Result<Scene, Fault> {
+pub fn open(
+    source: &str,
+    speed: Option<Speed>,
+    animation_rate: Option<f64>,
+    lens: impl Fn(&mut View),
+) -> Result<Scene, Fault> {
     let mut scene = read(source, speed, &lens)?;
     lens(&mut scene.view);
+    if let Some(rate) = animation_rate {
+        scene.set_animation_rate(rate);
+    }
+    scene.check_animations()?;
     Ok(scene)
 }
 
@@ -26,10 +37,16 @@ fn read(source: &str, speed: Option<Speed>, lens: &dyn Fn(&mut View)) -> Result<
     if is_mesh_file(path) {
         let imported = import(path)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let celerity = speed.map_or(Ok(Celerity::at_rest()), of_resting)?;
+        let celerity = speed.map(of_resting).transpose()?;
         let mut view = View::default();
         lens(&mut view);
-        return Ok(framed(&name, imported.mesh, celerity, view, imported.notes));
+        if imported.moves() {
+            return with_speed(authored(&name, imported, None, view), speed);
+        }
+        return Ok(match imported.view {
+            Some(_) => authored(&name, imported, celerity, view),
+            None => framed(&name, imported, celerity.unwrap_or(Celerity::at_rest()), view),
+        });
     }
     let names: Vec<_> = builtin_scenes().iter().map(|b| b.name).collect();
     let distance = |name: &&str| strsim::damerau_levenshtein(source, name);

@@ -1,16 +1,10 @@
+use crate::color::encoded;
 use crate::film::Film;
 use std::io::Write;
 
 /// The film as 8-bit sRGB, three bytes a pixel: clipped to 0…1 and encoded (IEC 61966-2-1).
 pub fn pixels_srgb(film: &Film) -> Vec<u8> {
-    film.color.iter().flat_map(|color| color.map(encode)).collect()
-}
-
-fn encode(linear: f32) -> u8 {
-    // A cast of NaN is 0: black.
-    let v = linear.clamp(0.0, 1.0);
-    let encoded = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * encoded + 0.5) as u8
+    film.color.iter().flat_map(|color| color.map(encoded)).collect()
 }
 
 /// Writes the film's colour as a PNG.
@@ -25,20 +19,4 @@ pub fn write_png(film: &Film, to: impl Write) -> std::io::Result<()> {
             image::ImageError::IoError(e) => e,
             other => std::io::Error::other(other),
         })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::color::linear;
-
-    #[test]
-    fn srgb_there_and_back() {
-        for v in 0..=255u8 {
-            assert_eq!(encode(linear(v)), v);
-        }
-        assert_eq!(encode(f32::NAN), 0);
-        assert_eq!(encode(7.0), 255);
-        assert_eq!(encode(-1.0), 0);
-    }
 }

@@ -3,7 +3,7 @@ use super::triangle::{HalfPlane, Linear, Planes, Surface, owns_boundary};
 use super::{BAND, Drawable, Samples};
 use crate::color::Coloring;
 use crate::relativity::RestSky;
-use crate::scene::{Lens, Projection};
+use crate::scene::{Lens, Material, Projection};
 use glam::{DVec2, DVec3};
 
 /// The film's rows to fill.
@@ -81,7 +81,14 @@ impl Sampling<'_> {
     /// Line of sight of a column and a line of the band.
     #[inline]
     fn direction(&self, x: usize, line: usize) -> Option<DVec3> {
-        self.lens.direction(DVec2::new(x as f64, f64::from(self.top) + line as f64) + self.offset)
+        self.towards(x, line, 0.0, 0.0)
+    }
+
+    /// Line of sight some pixels beside it.
+    #[inline]
+    fn towards(&self, x: usize, line: usize, dx: f64, dy: f64) -> Option<DVec3> {
+        let at = DVec2::new(x as f64 + dx, f64::from(self.top) + line as f64 + dy);
+        self.lens.direction(at + self.offset)
     }
 }
 
@@ -326,6 +333,8 @@ impl Band {
         rows: &mut Rows<'_>,
     ) {
         let width = sampling.width();
+        // Each of many samples stands for a part of the pixel.
+        let spread = f64::from(weight.sqrt());
         let mut last: Option<(u32, Seen<'_>)> = None;
         for (line, numbers) in self.triangle.chunks(width).enumerate() {
             for (x, &number) in numbers.iter().enumerate() {
@@ -345,7 +354,14 @@ impl Band {
                 let rest = seen.sky.boosted(direction, length);
                 let nearness = seen.surface.nearness(direction, length, rest.along);
                 let doppler = length / rest.length;
-                let light = coloring.light(seen.own_color(direction, rest.along, nearness), doppler);
+                let neighbours = || {
+                    // A look along the line of sight itself where there is no neighbour: as sharp as can be.
+                    let to =
+                        |dx, dy| sampling.towards(x, line, dx * spread, dy * spread).unwrap_or(direction);
+                    [to(1.0, 0.0), to(0.0, 1.0)]
+                };
+                let own = seen.own_color(direction, rest.along, nearness, neighbours);
+                let light = coloring.light(own, doppler);
                 let color = &mut rows.color[i];
                 *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
                 if centre {
@@ -383,8 +399,7 @@ impl<'a> Seen<'a> {
     /// Barycentric coordinates of the point a line of sight meets; negative beside the triangle.
     #[inline]
     fn weights(&self, v: DVec3, rest_along: f64, nearness: f64) -> [f64; 3] {
-        let across = v - v.dot(self.sky.axis()) * self.sky.axis();
-        let v_rest = self.drawable.map.rotate_back(across + rest_along * self.sky.axis());
+        let v_rest = self.rest_direction(v, rest_along);
         let [a, b, c] = self.rest.map(|corner| corner - v_rest / nearness);
         let normal = (self.rest[1] - self.rest[0]).cross(self.rest[2] - self.rest[0]);
         let areas = [b.cross(c), c.cross(a), a.cross(b)].map(|area| area.dot(normal));
@@ -394,8 +409,7 @@ impl<'a> Seen<'a> {
     /// For a line of sight beside the triangle, 1/s of the triangle's point nearest to it; none inside.
     fn beside(&self, v: DVec3, length: f64, rest_along: f64, plane: f64) -> Option<f64> {
         let weights = self.weights(v, rest_along, plane);
-        let across = v - v.dot(self.sky.axis()) * self.sky.axis();
-        let v_rest = self.drawable.map.rotate_back(across + rest_along * self.sky.axis()).normalize();
+        let v_rest = self.rest_direction(v, rest_along).normalize();
         let away = |p: DVec3| p - v_rest * p.dot(v_rest);
         let corners = self.drawable.mesh.corners(self.face);
         let nearest_of = |i: usize| {
@@ -412,15 +426,59 @@ impl<'a> Seen<'a> {
         Some(length / self.drawable.map.see(point).distance)
     }
 
-    /// The mesh's own colour at the point a line of sight meets.
+    /// The mesh's own colour at the point a line of sight meets; `neighbours` gives the lines of sight one pixel
+    /// to the right and below.
     #[inline]
-    fn own_color(&self, v: DVec3, rest_along: f64, nearness: f64) -> [f32; 3] {
+    fn own_color(
+        &self,
+        v: DVec3,
+        rest_along: f64,
+        nearness: f64,
+        neighbours: impl FnOnce() -> [DVec3; 2],
+    ) -> [f32; 3] {
         let mesh = self.drawable.mesh;
-        if mesh.paint.is_of_faces() {
-            return mesh.paint.at(self.face, [0; 3], [1.0; 3]);
+        let textured = mesh.material_of(self.face).is_some_and(Material::is_textured);
+        if mesh.paint.is_of_faces() && !textured {
+            return mesh.color(self.face, [1.0, 0.0, 0.0], |_| [1.0; 3]);
         }
         let weights = clamped(self.weights(v, rest_along, nearness));
-        mesh.paint.at(self.face, mesh.triangles[self.face], weights)
+        if !textured {
+            return mesh.color(self.face, weights, |_| [1.0; 3]);
+        }
+        let corner_uv = mesh.corner_uv(self.face).unwrap_or_default();
+        let mix = |w: [f64; 3]| w[0] * corner_uv[0] + w[1] * corner_uv[1] + w[2] * corner_uv[2];
+        let (uv, step) = (mix(weights), self.changes(v, weights, neighbours()).map(mix));
+        mesh.color(self.face, weights, |texture| texture.at(uv, step))
+    }
+
+    /// How barycentric coordinates change to the two neighbouring lines of sight.
+    ///
+    /// They are the products eᵢ·v′ with the planes through the observer and the edges, over their sum: linear
+    /// in v′ up to that sum, so that the change is had without a neighbour that may miss the plane.
+    fn changes(&self, v: DVec3, weights: [f64; 3], neighbours: [DVec3; 2]) -> [[f64; 3]; 2] {
+        let [a, b, c] = self.rest;
+        let planes = [b.cross(c), c.cross(a), a.cross(b)];
+        let here = self.in_rest_frame(v);
+        let whole = (planes[0] + planes[1] + planes[2]).dot(here);
+        neighbours.map(|neighbour| {
+            let step = self.in_rest_frame(neighbour) - here;
+            let parts = planes.map(|e| e.dot(step));
+            let sum = parts[0] + parts[1] + parts[2];
+            [0, 1, 2].map(|i| (parts[i] - weights[i] * sum) / whole)
+        })
+    }
+
+    /// A line of sight, boosted.
+    fn in_rest_frame(&self, v: DVec3) -> DVec3 {
+        let along = self.sky.boosted(v, v.length()).along;
+        self.rest_direction(v, along)
+    }
+
+    /// A line of sight in the rest frame, given its part along the motion there.
+    #[inline]
+    fn rest_direction(&self, v: DVec3, rest_along: f64) -> DVec3 {
+        let across = v - v.dot(self.sky.axis()) * self.sky.axis();
+        self.drawable.map.rotate_back(across + rest_along * self.sky.axis())
     }
 }
 

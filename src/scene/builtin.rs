@@ -58,7 +58,7 @@ pub fn builtin_meshes() -> impl Iterator<Item = &'static str> + Clone {
 /// A mesh that ships, by name.
 pub fn builtin_mesh(name: &str) -> Option<Mesh> {
     let (name, obj, mtl) = MESHES.iter().find(|(n, ..)| *n == name)?;
-    Some(import_obj(obj, mtl, name).expect("meshes that ship are read by a test").mesh)
+    Some(import_obj(obj, mtl, name).expect("meshes that ship are read by a test").into_mesh())
 }
 
 #[cfg(test)]

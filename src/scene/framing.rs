@@ -1,8 +1,7 @@
-use super::{Aim, Body, Mesh, Projection, Scene, View};
+use super::{Aim, Imported, Part, Projection, Scene, View};
 use crate::relativity::Motion;
 use glam::DVec3;
-use std::sync::Arc;
-use terrell_geodesic::{Celerity, Event};
+use terrell_geodesic::{Celerity, Event, FourVector};
 
 /// A scene around one mesh: it passes a camera at rest, square to its motion, at a distance from which all of
 /// it is seen, and the picture is taken when its centre appears abreast.
@@ -12,10 +11,9 @@ use terrell_geodesic::{Celerity, Event};
 /// one distance serves all speeds.
 ///
 /// `view` gives the lens and the picture's size; the rest of it is set here.
-pub fn framed(name: &str, mesh: Mesh, celerity: Celerity, view: View, notes: Vec<String>) -> Scene {
-    let (low, high) = mesh.bounds().unwrap_or((DVec3::ZERO, DVec3::ZERO));
+pub fn framed(name: &str, imported: Imported, celerity: Celerity, view: View) -> Scene {
+    let (low, high) = bounds(&imported.parts);
     let centre = 0.5 * (low + high);
-    let radius = (0.5 * (high - low).length()).max(1e-30);
     let along = celerity.direction();
     let square = |v: DVec3| along.map_or(v, |axis| v - axis * v.dot(axis));
     let forward = [-DVec3::Z, -DVec3::X, DVec3::Y]
@@ -26,6 +24,72 @@ pub fn framed(name: &str, mesh: Mesh, celerity: Celerity, view: View, notes: Vec
         .normalize();
     let up = [DVec3::Y, DVec3::Z].into_iter().find(|u| u.cross(forward).length() > 0.5).unwrap_or(DVec3::X);
 
+    let distance = distance_for(&view, 0.5 * (high - low).length());
+    let view = View { aim: Aim::Forward(forward), up, ..view };
+    passing(name, imported, celerity, view, distance * forward, centre)
+}
+
+/// A scene as a file has it: its velocities, and its camera if it has one; else a camera at rest that looks along −z
+/// at all of it, as it is when the light of time 0 arrives.
+///
+/// With a `celerity`, what the file has at rest moves with that, and is seen where the file puts it.
+pub fn authored(name: &str, imported: Imported, celerity: Option<Celerity>, lens: View) -> Scene {
+    let (low, high) = bounds(&imported.parts);
+    let centre = 0.5 * (low + high);
+    let view = imported.view.clone().unwrap_or_else(|| {
+        let distance = distance_for(&lens, 0.5 * (high - low).length());
+        let event = Event::at(distance, centre + DVec3::Z * distance);
+        View { event, aim: Aim::Forward(-DVec3::Z), up: DVec3::Y, ..lens }
+    });
+    match celerity {
+        Some(celerity) => {
+            let from_camera = centre - view.event.position();
+            passing(name, imported, celerity, view, from_camera, centre)
+        }
+        None => Scene {
+            name: name.to_owned(),
+            bodies: imported.parts.into_iter().map(Part::into_body).collect(),
+            view,
+            notes: imported.notes,
+        },
+    }
+}
+
+/// Everything in a file in motion together, its point `centre` seen at `seen` from the camera's event.
+fn passing(
+    name: &str,
+    imported: Imported,
+    celerity: Celerity,
+    view: View,
+    seen: DVec3,
+    centre: DVec3,
+) -> Scene {
+    let left = view.event + FourVector::from_parts(-seen.length(), seen);
+    let motion = Motion { celerity, origin: left };
+    let to_centre = motion.world_from_rest::<f64>() * FourVector::from_parts(0.0, centre);
+    let motion = Motion { celerity, origin: left + (-to_centre) };
+    let imported = imported.settled();
+    let body = |part: Part| super::Body { motion, ..part.into_body() };
+    Scene {
+        name: name.to_owned(),
+        bodies: imported.parts.into_iter().map(body).collect(),
+        view,
+        notes: imported.notes,
+    }
+}
+
+/// Least and greatest coordinates of all parts where the file puts them.
+fn bounds(parts: &[Part]) -> (DVec3, DVec3) {
+    let of = |part: &Part| {
+        let at = part.motion.origin.position();
+        part.bounds().map(|(low, high)| (low + at, high + at))
+    };
+    let both = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
+    parts.iter().filter_map(of).reduce(both).unwrap_or((DVec3::ZERO, DVec3::ZERO))
+}
+
+/// How far away a ball of that radius is seen whole, with a margin.
+fn distance_for(view: &View, radius: f64) -> f64 {
     // The smaller half-field, and a margin. Beyond a radian the mesh would be seen from too near.
     let fov_deg = view.fov_deg.unwrap_or(View::usual_fov_deg(view.projection));
     let half = 0.5 * fov_deg.to_radians();
@@ -37,24 +101,14 @@ pub fn framed(name: &str, mesh: Mesh, celerity: Celerity, view: View, notes: Vec
     };
     // A field no lens has is refused when the camera is made.
     let half = if half > 0.0 { half.min(1.0) } else { 1.0 };
-    let distance = 1.1 * radius / half.sin();
-
-    // The rest frame's origin passes so that the centre is abreast at −distance, seen at 0.
-    let motion = Motion { celerity, origin: Event::at(-distance, distance * forward) };
-    let to_centre = motion.world_from_rest::<f64>() * terrell_geodesic::FourVector::from_parts(0.0, centre);
-    let motion = Motion { celerity, origin: motion.origin + (-to_centre) };
-    Scene {
-        name: name.to_owned(),
-        bodies: vec![Body { name: name.to_owned(), mesh: Arc::new(mesh), motion }],
-        view: View { aim: Aim::Forward(forward), up, ..view },
-        notes,
-    }
+    1.1 * radius.max(1e-30) / half.sin()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::relativity::ApparentMap;
+    use crate::scene::Mesh;
 
     #[test]
     fn the_whole_mesh_is_in_the_picture_at_every_speed_and_direction() {
@@ -67,6 +121,7 @@ mod tests {
             );
         }
         let mesh = Mesh::new(&vertices, vec![[0, 1, 2]]);
+        let imported = Imported { parts: vec![Part::still("m".into(), mesh)], ..Imported::default() };
         let views = [
             (Projection::Pinhole, None, [1280, 720]),
             (Projection::Pinhole, Some(15.0), [300, 900]),
@@ -80,7 +135,7 @@ mod tests {
                 for (projection, fov_deg, size) in views {
                     let celerity = Celerity::from_gamma(gamma, direction).unwrap();
                     let view = View { projection, fov_deg, size, ..View::default() };
-                    let scene = framed("m", mesh.clone(), celerity, view, vec![]);
+                    let scene = framed("m", imported.clone(), celerity, view);
                     let camera = scene.camera().unwrap();
                     let map = ApparentMap::new(&scene.bodies[0].motion, &camera.observer);
                     for v in &vertices {

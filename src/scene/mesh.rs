@@ -1,4 +1,5 @@
-use glam::DVec3;
+use super::{Material, Texture};
+use glam::{DVec2, DVec3};
 
 /// A triangle mesh in its rest frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,15 +14,17 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// The mesh's own colours.
     pub paint: Paint,
+    /// What its surfaces are made of; none for paint alone.
+    pub materials: Vec<Material>,
+    /// Index of every triangle's material; empty where all are of the first.
+    pub material: Vec<u32>,
     /// Texture coordinates, one a vertex, or none.
     pub uv: Vec<[f32; 2]>,
     /// Unit normals in the rest frame, one a vertex, or none.
     pub normals: Vec<[f32; 3]>,
-    /// Triangles seen from their front only, one flag a triangle; empty where all are seen from both sides.
-    pub one_sided: Vec<bool>,
 }
 
-/// Linear sRGB colours (Rec. 709 primaries, D65) of a mesh's surface.
+/// Linear sRGB colours (Rec. 709 primaries, D65) of a mesh's surface; where there are materials, times theirs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Paint {
     /// One colour.
@@ -51,6 +54,16 @@ pub enum MeshError {
         vertex: usize,
         /// What was found.
         position: String,
+    },
+    /// A triangle is of a material that is not there.
+    #[error("triangle {triangle} is of material {material}, but the mesh has {count}")]
+    BadMaterial {
+        /// The triangle.
+        triangle: usize,
+        /// The index it uses.
+        material: u32,
+        /// How many there are.
+        count: usize,
     },
     /// A colour that is NaN or infinite.
     #[error("a colour is not a finite number")]
@@ -110,10 +123,41 @@ impl Mesh {
         self.triangles[triangle].map(|v| self.vertex(v))
     }
 
+    /// What a triangle is made of; none where there is only paint.
+    #[inline]
+    pub fn material_of(&self, triangle: usize) -> Option<&Material> {
+        self.materials.get(self.material.get(triangle).map_or(0, |m| *m as usize))
+    }
+
     /// Whether a triangle is seen from its front only.
     #[inline]
     pub fn is_one_sided(&self, triangle: usize) -> bool {
-        self.one_sided.get(triangle).copied().unwrap_or(false)
+        self.material_of(triangle).is_some_and(|m| m.one_sided)
+    }
+
+    /// Texture coordinates of a triangle's corners.
+    #[inline]
+    pub fn corner_uv(&self, triangle: usize) -> Option<[DVec2; 3]> {
+        let uv = |v: u32| self.uv.get(v as usize).map(|uv| DVec2::new(uv[0].into(), uv[1].into()));
+        let [a, b, c] = self.triangles[triangle].map(uv);
+        Some([a?, b?, c?])
+    }
+
+    /// The surface's colour at a point of a triangle, given its barycentric coordinates; `look` gives a texture's
+    /// colour there.
+    #[inline]
+    pub fn color(&self, triangle: usize, weights: [f64; 3], look: impl Fn(&Texture) -> [f32; 3]) -> [f32; 3] {
+        let paint = self.paint.at(triangle, self.triangles[triangle], weights);
+        self.material_of(triangle).map_or(paint, |m| m.color(paint, look))
+    }
+
+    /// Gives the whole mesh one colour, in place of paint, textures and emission.
+    pub fn repaint(&mut self, color: [f32; 3]) {
+        self.paint = Paint::Uniform(color);
+        for material in &mut self.materials {
+            let Material { name, unlit, one_sided, .. } = std::mem::take(material);
+            *material = Material { name, unlit, one_sided, ..Material::default() };
+        }
     }
 
     /// Least and greatest coordinates; none for a mesh without vertices.
@@ -176,9 +220,21 @@ impl Mesh {
             *self = other;
             return;
         }
-        if !self.one_sided.is_empty() || !other.one_sided.is_empty() {
-            self.one_sided.resize(triangles, false);
-            self.one_sided.extend((0..other.triangles.len()).map(|t| other.is_one_sided(t)));
+        if self.materials.is_empty() && other.materials.is_empty() {
+            // Of one list, still to come.
+            if !(self.material.is_empty() && other.material.is_empty()) {
+                self.material.resize(triangles, 0);
+                self.material.extend_from_slice(&other.material);
+                self.material.resize(triangles + other.triangles.len(), 0);
+            }
+        } else {
+            let own = self.materials.len().max(1) as u32;
+            self.materials.resize_with(own as usize, Material::default);
+            self.materials.extend(other.materials);
+            self.materials.resize_with(self.materials.len().max(own as usize + 1), Material::default);
+            self.material.resize(triangles, 0);
+            let theirs = |t: usize| own + other.material.get(t).copied().unwrap_or(0);
+            self.material.extend((0..other.triangles.len()).map(theirs));
         }
         fill_up(&mut self.uv, vertices, &other.uv, other.x.len(), [0.0; 2]);
         fill_up(&mut self.normals, vertices, &other.normals, other.x.len(), [0.0; 3]);
@@ -233,19 +289,24 @@ impl Mesh {
         let lengths = [
             ("texture coordinates", self.uv.len(), count),
             ("normals", self.normals.len(), count),
-            ("one-sided flags", self.one_sided.len(), self.triangles.len()),
+            ("materials of triangles", self.material.len(), self.triangles.len()),
         ];
         for (what, found, needed) in lengths {
             if found != 0 && found != needed {
                 return Err(MeshError::BadAttribute { what, found, needed });
             }
         }
+        let known = self.materials.len().max(1);
+        let unknown = self.material.iter().enumerate().find(|(_, m)| **m as usize >= known);
+        if let Some((triangle, &material)) = unknown {
+            return Err(MeshError::BadMaterial { triangle, material, count: known });
+        }
         let finite = |colors: &[[f32; 3]]| colors.iter().flatten().all(|c| c.is_finite());
         let all_finite = match &self.paint {
             Paint::Uniform(color) => finite(&[*color]),
             Paint::Faces(colors) | Paint::Vertices(colors) => finite(colors),
         };
-        if !all_finite {
+        if !all_finite || !self.materials.iter().all(Material::is_finite) {
             return Err(MeshError::BadColor);
         }
         let (found, needed) = match &self.paint {

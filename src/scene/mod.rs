@@ -3,20 +3,26 @@
 mod body;
 mod builtin;
 mod camera;
+mod clip;
 mod file;
 mod framing;
 mod import;
+mod material;
 mod mesh;
 pub mod shapes;
+mod texture;
 mod view;
 
 pub use body::Body;
 pub use builtin::{Builtin, builtin_mesh, builtin_meshes, builtin_scenes};
 pub use camera::{Camera, Lens, LensError, MAX_PIXELS, MAX_SIDE, Projection};
+pub use clip::{Between, Blend, Clip, Joint, Track};
 pub use file::{SceneError, parse_scene};
-pub use framing::framed;
-pub use import::{ImportError, Imported, import, import_obj, is_mesh_file};
+pub use framing::{authored, framed};
+pub use import::{ImportError, Imported, Part, import, import_obj, is_mesh_file};
+pub use material::Material;
 pub use mesh::{Mesh, MeshError, Paint};
+pub use texture::{MAX_TEXELS, Picture, Texture, Wrap};
 pub use view::{Aim, View, ViewError};
 
 use terrell_geodesic::{Celerity, CelerityError};
@@ -43,6 +49,20 @@ pub enum Speed {
     Along(f64),
 }
 
+/// An animation that is not slow against light.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "'{body}' is animated with up to {speed:.3} of light speed within its rest frame; above {} no one pose can stand for it. Slow it down with an animation rate below {:.2e} (seconds of the animation in a unit of time), or stop it with 0",
+    Clip::FASTEST,
+    Clip::FASTEST / .speed
+)]
+pub struct TooFast {
+    /// Which.
+    pub body: String,
+    /// Its greatest speed, in units of that of light, at the rate it has.
+    pub speed: f64,
+}
+
 impl Scene {
     /// The camera at the moment the view asks for.
     ///
@@ -50,6 +70,30 @@ impl Scene {
     /// If the view cannot be had; see [`ViewError`].
     pub fn camera(&self) -> Result<Camera, ViewError> {
         self.view.camera(&self.bodies)
+    }
+
+    /// Sets how many seconds of their clips pass in a unit of time, for all that is animated; 0 stops it.
+    pub fn set_animation_rate(&mut self, rate: f64) {
+        for clip in self.bodies.iter_mut().filter_map(|b| b.clip.as_mut()) {
+            std::sync::Arc::make_mut(clip).rate = rate;
+        }
+    }
+
+    /// Checks that animations are slow against light.
+    ///
+    /// # Errors
+    /// Naming the first that is not; see [`Clip`].
+    pub fn check_animations(&self) -> Result<(), TooFast> {
+        for body in &self.bodies {
+            if let (Some(clip), Some(bounds)) = (&body.clip, body.mesh.bounds()) {
+                let speed = clip.greatest_speed(bounds);
+                // Also true for NaN.
+                if !(speed <= Clip::FASTEST) {
+                    return Err(TooFast { body: body.name.clone(), speed });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Sets the speed of whatever moves: the bodies in motion; if none is, the camera in motion; if nothing

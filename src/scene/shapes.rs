@@ -268,7 +268,7 @@ mod tests {
                 for (a, b) in read.corners(t).into_iter().zip(made.corners(t)) {
                     assert!((a - b).length() < 1e-6, "{name}");
                 }
-                let color = |mesh: &Mesh| mesh.paint.at(t, mesh.triangles[t], [0.0, 1.0, 0.0]);
+                let color = |mesh: &Mesh| mesh.color(t, [0.0, 1.0, 0.0], |_| [1.0; 3]);
                 assert!(color(&read).iter().zip(color(&made)).all(|(a, b)| (a - b).abs() < 1e-4));
             }
         }

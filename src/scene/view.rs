@@ -115,7 +115,7 @@ impl View {
             };
             observer = body
                 .motion
-                .seen_abreast(body.mesh.centre(), &observer)
+                .seen_abreast(body.centre(), &observer)
                 .map_err(|_| ViewError::NeverPasses(name.clone()))?;
         }
         let forward = match self.aim {

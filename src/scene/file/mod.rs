@@ -6,15 +6,12 @@ mod tables;
 pub use source::SceneError;
 
 use super::import::{ImportError, import, is_mesh_file};
-use super::{
-    Aim, Body, LensError, Mesh, Paint, Projection, Scene, View, ViewError, builtin_mesh, builtin_meshes,
-};
+use super::{Aim, Body, LensError, Part, Projection, Scene, View, ViewError, builtin_mesh, builtin_meshes};
 use crate::relativity::Motion;
 use glam::{DAffine3, DQuat, DVec3};
 use source::{Source, VelocityKeys, did_you_mean, explain, velocity_keys};
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 use tables::{BodyTable, CameraTable, Color, MaterialTable, Scale, SceneFile};
 use terrell_geodesic::TetradError;
 use toml::Spanned;
@@ -30,15 +27,16 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         source.fault(at, explain(e.message(), at.map_or("", |at| source.line_at(at))))
     })?;
     let mut notes = Vec::new();
-    let mut meshes: BTreeMap<String, Mesh> = BTreeMap::new();
+    let mut meshes: BTreeMap<String, Vec<Part>> = BTreeMap::new();
     let mut bodies: Vec<Body> = Vec::new();
     for (index, table) in file.body.iter().enumerate() {
-        let body = read_body(&source, index, table, &file.material, &mut meshes, &mut notes)?;
-        if bodies.iter().any(|b| b.name == body.name) {
-            return Err(source
-                .at(&table.mesh, format!("two bodies are called '{}'; give one another name", body.name)));
+        for body in read_body(&source, index, table, &file.material, &mut meshes, &mut notes)? {
+            if bodies.iter().any(|b| b.name == body.name) {
+                let message = format!("two bodies are called '{}'; give one another name", body.name);
+                return Err(source.at(&table.mesh, message));
+            }
+            bodies.push(body);
         }
-        bodies.push(body);
     }
     if bodies.is_empty() {
         return Err(source.fault(None, "the scene has no [[body]], so there is nothing to see"));
@@ -137,22 +135,23 @@ fn read_body(
     index: usize,
     table: &BodyTable,
     materials: &BTreeMap<String, MaterialTable>,
-    meshes: &mut BTreeMap<String, Mesh>,
+    meshes: &mut BTreeMap<String, Vec<Part>>,
     notes: &mut Vec<String>,
-) -> Result<Body, SceneError> {
+) -> Result<Vec<Body>, SceneError> {
     let mesh_name = table.mesh.get_ref();
     if !meshes.contains_key(mesh_name) {
-        let mesh = read_mesh(source, &table.mesh, notes)?;
-        meshes.insert(mesh_name.clone(), mesh);
+        let parts = read_mesh(source, &table.mesh, notes)?;
+        meshes.insert(mesh_name.clone(), parts);
     }
-    let mut mesh = meshes[mesh_name].clone();
+    let mut parts = meshes[mesh_name].clone();
     if let Some(word) = &table.material {
         let name = word.get_ref();
         let material = materials.get(name).ok_or_else(|| {
             let known = materials.keys().map(String::as_str);
             source.at(word, format!("there is no [material.{name}]; {}", did_you_mean(name, known)))
         })?;
-        mesh.paint = Paint::Uniform(read_color(source, &material.color)?);
+        let color = read_color(source, &material.color)?;
+        parts.iter_mut().for_each(|part| part.mesh.repaint(color));
     }
     let scale = match &table.scale {
         None => DVec3::ONE,
@@ -181,8 +180,14 @@ fn read_body(
         }
     };
     if table.scale.is_some() || table.rotation.is_some() {
-        mesh = mesh.placed(&DAffine3::from_scale_rotation_translation(scale, rotation, DVec3::ZERO));
-        mesh.check().map_err(|e| source.at(&table.mesh, e))?;
+        for part in &mut parts {
+            part.place(DAffine3::from_scale_rotation_translation(scale, rotation, DVec3::ZERO));
+            part.mesh.check().map_err(|e| source.at(&table.mesh, e))?;
+        }
+    }
+    if let Some(rate) = &table.animation_rate {
+        let seconds = source.finite("animation_rate", rate)?;
+        parts.iter_mut().filter_map(|part| part.clip.as_mut()).for_each(|clip| clip.rate = seconds);
     }
     let motion = Motion {
         celerity: source.celerity(&velocity_keys!(table))?,
@@ -190,17 +195,23 @@ fn read_body(
     };
     let stem = Path::new(mesh_name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let name = table.name.clone().unwrap_or(if index == 0 { stem } else { format!("{stem}{index}") });
-    Ok(Body { name, mesh: Arc::new(mesh), motion })
+    // What is animated within it goes by its own name, too.
+    let named = |(i, part): (usize, Part)| Body {
+        name: if i == 0 { name.clone() } else { format!("{name}.{}", part.name) },
+        motion,
+        ..part.into_body()
+    };
+    Ok(parts.into_iter().enumerate().map(named).collect())
 }
 
 fn read_mesh(
     source: &Source<'_>,
     word: &Spanned<String>,
     notes: &mut Vec<String>,
-) -> Result<Mesh, SceneError> {
+) -> Result<Vec<Part>, SceneError> {
     let name = word.get_ref();
     if let Some(mesh) = builtin_mesh(name) {
-        return Ok(mesh);
+        return Ok(vec![Part::still(name.clone(), mesh)]);
     }
     if !is_mesh_file(Path::new(name)) {
         let message = format!(
@@ -211,8 +222,12 @@ fn read_mesh(
     }
     let file = source.path.parent().unwrap_or(Path::new("")).join(name);
     let imported = import(&file).map_err(|e: ImportError| source.at(word, e))?;
+    if imported.moves() {
+        notes.push(format!("{name}: velocities in it are left out; a [[body]] moves as a whole"));
+    }
+    let imported = imported.settled();
     notes.extend(imported.notes);
-    Ok(imported.mesh)
+    Ok(imported.parts)
 }
 
 fn read_color(source: &Source<'_>, place: &Spanned<Color>) -> Result<[f32; 3], SceneError> {
@@ -232,6 +247,7 @@ fn read_color(source: &Source<'_>, place: &Spanned<Color>) -> Result<[f32; 3], S
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Paint;
     use terrell_geodesic::Event;
 
     fn error(text: &str) -> String {

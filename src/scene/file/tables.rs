@@ -51,6 +51,7 @@ pub(super) struct BodyTable {
     pub direction: Option<Vector>,
     pub rotation: Option<RotationTable>,
     pub scale: Option<Spanned<Scale>>,
+    pub animation_rate: Option<Spanned<f64>>,
     pub material: Option<Spanned<String>>,
 }
 

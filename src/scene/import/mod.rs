@@ -2,17 +2,100 @@
 
 mod gltf;
 mod obj;
+mod picture;
 
-use super::{Mesh, MeshError};
+use super::{Body, Clip, Material, Mesh, MeshError, View};
+use crate::relativity::Motion;
+use glam::{DAffine3, DVec3};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// A mesh file, read.
+/// A mesh file, read, in the file's own coordinates.
 #[derive(Clone, Debug, Default)]
 pub struct Imported {
-    /// Everything in the file, in the file's own coordinates.
-    pub mesh: Mesh,
+    /// What moves alike, together.
+    pub parts: Vec<Part>,
+    /// The camera in it, if any.
+    pub view: Option<View>,
     /// What was passed over, for people to read.
     pub notes: Vec<String>,
+}
+
+/// Something in a mesh file that moves on its own.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// What the file calls it.
+    pub name: String,
+    /// At rest; where it is animated, before its [`Clip`] poses it.
+    pub mesh: Mesh,
+    /// How it moves.
+    pub motion: Motion,
+    /// How it is animated, slowly, within its rest frame.
+    pub clip: Option<Clip>,
+}
+
+impl Part {
+    /// What neither moves nor is animated.
+    pub(super) fn still(name: String, mesh: Mesh) -> Self {
+        Self { name, mesh, motion: Motion::at_rest(DVec3::ZERO), clip: None }
+    }
+
+    /// Moves and turns it within its rest frame.
+    pub(super) fn place(&mut self, place: DAffine3) {
+        match self.clip.take() {
+            Some(clip) => self.clip = Some(clip.placed(place)),
+            None => self.mesh = std::mem::take(&mut self.mesh).placed(&place),
+        }
+    }
+
+    /// Least and greatest coordinates in the rest frame; of what is animated, as at its beginning.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        match &self.clip {
+            Some(clip) => self.mesh.clone().placed(&clip.pose(0.0)).bounds(),
+            None => self.mesh.bounds(),
+        }
+    }
+
+    /// As a body of a scene.
+    pub fn into_body(self) -> Body {
+        Body {
+            name: self.name,
+            mesh: Arc::new(self.mesh),
+            motion: self.motion,
+            clip: self.clip.map(Arc::new),
+        }
+    }
+}
+
+impl Imported {
+    /// Whether the file says that anything in it moves.
+    pub fn moves(&self) -> bool {
+        self.parts.iter().any(|p| p.motion.celerity.direction().is_some())
+    }
+
+    /// All meshes in one, as they are where nothing moves and nothing is animated.
+    pub fn into_mesh(self) -> Mesh {
+        let mut all = Mesh::default();
+        for Part { mesh, clip, .. } in self.settled().parts {
+            all.append(match clip {
+                Some(clip) => mesh.placed(&clip.pose(0.0)),
+                None => mesh,
+            });
+        }
+        all
+    }
+
+    /// Everything where the file puts it, at rest; animations stay.
+    pub fn settled(mut self) -> Self {
+        for part in &mut self.parts {
+            let moved = DAffine3::from_translation(part.motion.origin.position());
+            if moved != DAffine3::IDENTITY {
+                part.place(moved);
+            }
+            part.motion = Motion::at_rest(DVec3::ZERO);
+        }
+        self
+    }
 }
 
 /// Why a mesh file cannot be read.
@@ -71,7 +154,15 @@ pub fn import(path: &Path) -> Result<Imported, ImportError> {
         "gltf" | "glb" => gltf::parse(&contents(path)?, path, &contents)?,
         _ => return Err(ImportError::UnknownFormat(path.to_owned())),
     };
-    imported.mesh.check().map_err(|source| ImportError::Mesh { path: path.to_owned(), source })?;
+    checked(imported, path)
+}
+
+fn checked(imported: Imported, path: &Path) -> Result<Imported, ImportError> {
+    let fault = |source| ImportError::Mesh { path: path.to_owned(), source };
+    if imported.parts.is_empty() {
+        return Err(fault(MeshError::Empty));
+    }
+    imported.parts.iter().try_for_each(|part| part.mesh.check()).map_err(fault)?;
     Ok(imported)
 }
 
@@ -82,12 +173,27 @@ pub fn import(path: &Path) -> Result<Imported, ImportError> {
 pub fn import_obj(obj: &str, mtl: &str, name: &str) -> Result<Imported, ImportError> {
     let path = Path::new(name);
     let imported = obj::parse(obj.as_bytes(), path, &|_| Ok(mtl.as_bytes().to_vec()))?;
-    imported.mesh.check().map_err(|source| ImportError::Mesh { path: path.to_owned(), source })?;
-    Ok(imported)
+    checked(imported, path)
 }
 
 /// Reads the bytes of a file a mesh file names.
 type ReadFile<'a> = &'a dyn Fn(&Path) -> Result<Vec<u8>, ImportError>;
+
+/// Once is enough.
+fn note_once(notes: &mut Vec<String>, note: &str) {
+    if !notes.iter().any(|n| n == note) {
+        notes.push(note.to_owned());
+    }
+}
+
+/// The material of that index in plain colours, for what has no texture coordinates: its index.
+fn without_textures(materials: &mut Vec<Material>, index: usize) -> usize {
+    let plain = Material { base_texture: None, emission_texture: None, ..materials[index].clone() };
+    materials.iter().position(|m| *m == plain).unwrap_or_else(|| {
+        materials.push(plain);
+        materials.len() - 1
+    })
+}
 
 /// A path written in a file, seen from where that file is.
 fn beside(file: &Path, named: &Path) -> PathBuf {

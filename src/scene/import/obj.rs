@@ -1,10 +1,14 @@
-use super::{ImportError, Imported, ReadFile, beside};
-use crate::scene::{Mesh, Paint};
+use super::picture::decode;
+use super::{ImportError, Imported, Part, ReadFile, beside, note_once, without_textures};
+use crate::scene::{Material, Mesh, Paint, Picture, Texture, Wrap};
+use glam::{DAffine2, DVec2, DVec3};
 use std::cell::RefCell;
-use std::path::Path;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// OBJ with MTL diffuse colours (taken as linear) or vertex colours; triangles are numbered in the file's
-/// order, polygons cut into fans.
+/// OBJ with MTL colours (taken as linear) and textures, or vertex colours; triangles are numbered in the file's
+/// order, polygons cut into triangles.
 pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imported, ImportError> {
     let fault = |line, message: String| ImportError::Contents { path: path.to_owned(), line, message };
     if let Some(at) = bytes.iter().position(|&b| b == 0) {
@@ -20,14 +24,15 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         return Err(fault(Some(line), format!("an index that leads nowhere in '{}'", line_of(text, line))));
     }
     let notes = RefCell::new(Vec::new());
-    let options =
-        tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
+    let options = tobj::LoadOptions { single_index: true, ..tobj::LoadOptions::default() };
+    let libraries = RefCell::new(path.to_owned());
     let load_materials = |library: &Path| {
         let library = beside(path, library);
         match read(&library) {
             Ok(bytes) => {
-                let (library, _) = cleaned(&String::from_utf8_lossy(&bytes));
-                tobj::load_mtl_buf(&mut without_odd_colors(&library).as_bytes())
+                let (text, _) = cleaned(&String::from_utf8_lossy(&bytes));
+                *libraries.borrow_mut() = library;
+                tobj::load_mtl_buf(&mut without_odd_colors(&text).as_bytes())
             }
             Err(e) => {
                 notes.borrow_mut().push(format!("no material colours: {e}"));
@@ -47,6 +52,12 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         }
         Vec::new()
     });
+    let mut library =
+        Library { folder: libraries.into_inner(), read, pictures: HashMap::new(), notes: notes.into_inner() };
+    // Two more: for what has none, and for what has colours at its vertices.
+    let mut made: Vec<Material> = materials.iter().map(|m| library.material(m)).collect();
+    let (plain, white) = (made.len(), made.len() + 1);
+    made.extend([Material { base_color: Paint::CLAY, ..Material::default() }, Material::default()]);
 
     let mut mesh = Mesh::default();
     let mut colored = false;
@@ -56,43 +67,215 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         let triples = |values: &[f64]| -> Vec<[f32; 3]> {
             values.chunks_exact(3).map(|v| [v[0] as f32, v[1] as f32, v[2] as f32]).collect()
         };
-        let material = source.material_id.and_then(|id| materials.get(id));
+        let material = source.material_id.filter(|id| *id < materials.len());
         let count = source.positions.len() / 3;
-        let diffuse = material.and_then(|m| m.diffuse);
-        colored |= diffuse.is_some() || !source.vertex_color.is_empty();
-        let paint = if source.vertex_color.is_empty() {
-            diffuse.map_or_else(Paint::default, |c| Paint::Uniform(c.map(|v| v as f32)))
-        } else {
-            Paint::Vertices(triples(&source.vertex_color))
-        };
-        mesh.append(Mesh {
+        let has_color = |id: usize| materials[id].diffuse.is_some() || made[id].is_textured();
+        colored |= material.is_some_and(has_color) || !source.vertex_color.is_empty();
+        let painted = !source.vertex_color.is_empty();
+        let mut part = Mesh {
             x: coordinate(0),
             y: coordinate(1),
             z: coordinate(2),
-            triangles: source.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-            paint,
-            // Where only some corners have them, they cannot be told apart any more.
+            paint: if painted {
+                Paint::Vertices(triples(&source.vertex_color))
+            } else {
+                Paint::Uniform([1.0; 3])
+            },
+            // Where only some corners have them, they cannot be told apart any more. MTL counts from below.
             uv: if source.texcoords.len() / 2 == count {
-                source.texcoords.chunks_exact(2).map(|v| [v[0] as f32, v[1] as f32]).collect()
+                source.texcoords.chunks_exact(2).map(|v| [v[0] as f32, (1.0 - v[1]) as f32]).collect()
             } else {
                 Vec::new()
             },
             normals: if source.normals.len() / 3 == count { triples(&source.normals) } else { Vec::new() },
-            one_sided: Vec::new(),
-        });
+            ..Mesh::default()
+        };
+        part.triangles = triangulated(&source.indices, &source.face_arities, &part);
+        let mut index = material.unwrap_or(plain);
+        if painted {
+            // Vertex colours stand for the material's own.
+            index = white;
+        } else if part.uv.is_empty() && made[index].is_textured() {
+            library.note("textures without texture coordinates are left out");
+            index = without_textures(&mut made, index);
+        }
+        part.material = vec![index as u32; part.triangles.len()];
+        if !part.triangles.is_empty() {
+            mesh.append(part);
+        }
     }
-    let mut notes = notes.into_inner();
-    if materials.iter().any(|m| m.diffuse_texture.is_some()) {
-        notes.push("textures are not drawn; material colours stand for them".into());
-    }
+    mesh.materials = made;
+    let mut notes = library.notes;
     if half_colored {
         notes.push("only some vertices have colours; they are left out".into());
     }
     if !colored {
+        (mesh.materials, mesh.material) = (Vec::new(), Vec::new());
         mesh.paint_as_clay();
         notes.push("the mesh has no colours; painted in clay by the direction its faces look".into());
     }
-    Ok(Imported { mesh, notes })
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Imported { parts: vec![Part::still(name, mesh)], notes, ..Imported::default() })
+}
+
+/// Polygons as triangles: convex ones as fans, others by cutting ears off, so that what they leave open stays
+/// open. Points and lines (one corner, two) are no surface.
+fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> Vec<[u32; 3]> {
+    let mut out = Vec::new();
+    let mut rest = indices;
+    let all_triangles = corners.is_empty().then(|| std::iter::repeat_n(3, indices.len() / 3));
+    let counts: Box<dyn Iterator<Item = usize>> = match all_triangles {
+        Some(threes) => Box::new(threes),
+        None => Box::new(corners.iter().map(|n| *n as usize)),
+    };
+    for count in counts {
+        let Some((polygon, others)) = rest.split_at_checked(count) else { break };
+        rest = others;
+        match *polygon {
+            [a, b, c] => out.push([a, b, c]),
+            [a, _, _, ..] => match concave(polygon, mesh) {
+                None => out.extend(polygon[1..].windows(2).map(|w| [a, w[0], w[1]])),
+                Some(flat) => {
+                    let mut ears: Vec<u32> = Vec::new();
+                    earcut::Earcut::new().earcut(flat.iter().map(|p| p.to_array()), &[], &mut ears);
+                    out.extend(ears.chunks_exact(3).map(|t| {
+                        let [p, q, r] = [0, 1, 2].map(|i| flat[t[i] as usize]);
+                        let left = (q - p).perp_dot(r - p) >= 0.0;
+                        let corner = |i: usize| polygon[t[i] as usize];
+                        if left { [0, 1, 2].map(corner) } else { [0, 2, 1].map(corner) }
+                    }));
+                }
+            },
+            _ => {}
+        }
+    }
+    out
+}
+
+/// A polygon's corners in its own plane, counter-clockwise, if it turns both ways there.
+fn concave(polygon: &[u32], mesh: &Mesh) -> Option<Vec<DVec2>> {
+    let at = |i: usize| mesh.vertex(polygon[i % polygon.len()]);
+    // Twice the area, as a vector (Newell).
+    let origin = at(0);
+    let normal: DVec3 = (1..polygon.len() - 1).map(|i| (at(i) - origin).cross(at(i + 1) - origin)).sum();
+    let normal = normal.try_normalize()?;
+    let right = normal.any_orthonormal_vector();
+    let up = normal.cross(right);
+    let flat: Vec<DVec2> =
+        (0..polygon.len()).map(|i| at(i) - origin).map(|p| DVec2::new(p.dot(right), p.dot(up))).collect();
+    let corner = |i: usize| flat[i % flat.len()];
+    let turns = |i: usize| {
+        let (before, after) = (corner(i + 1) - corner(i), corner(i + 2) - corner(i + 1));
+        before.perp_dot(after) < -1e-9 * before.length() * after.length()
+    };
+    // All turns to the left may still go round twice (a pentagram).
+    let around: f64 = (0..flat.len())
+        .map(|i| (corner(i + 1) - corner(i)).angle_to(corner(i + 2) - corner(i + 1)))
+        .filter(|angle| angle.is_finite())
+        .sum();
+    ((0..flat.len()).any(turns) || around > 7.0).then_some(flat)
+}
+
+/// The materials of an OBJ file, and the pictures they name.
+struct Library<'a> {
+    /// The file that names them, for where they are.
+    folder: PathBuf,
+    read: ReadFile<'a>,
+    pictures: HashMap<PathBuf, Option<Arc<Picture>>>,
+    notes: Vec<String>,
+}
+
+impl Library<'_> {
+    fn material(&mut self, source: &tobj::Material) -> Material {
+        let texture = source.diffuse_texture.as_deref().and_then(|map| self.texture(map));
+        let other = |key: &str| source.unknown_param.get(key).map(String::as_str);
+        let emission_texture = other("map_Ke").and_then(|map| self.texture(map));
+        let emission: Vec<f32> =
+            other("Ke").into_iter().flat_map(str::split_whitespace).filter_map(|v| v.parse().ok()).collect();
+        let emission = match emission[..] {
+            [r, g, b, ..] if [r, g, b].iter().all(|v| v.is_finite()) => [r, g, b],
+            _ if emission_texture.is_some() => [1.0; 3],
+            _ => [0.0; 3],
+        };
+        if source.dissolve.is_some_and(|d| d < 1.0) {
+            self.note("transparency is not drawn");
+        }
+        let color = source.diffuse.map(|c| c.map(|v| v as f32));
+        Material {
+            name: source.name.clone(),
+            // Many programs write black where there is a texture, and do not mean it.
+            base_color: match color {
+                Some([0.0, 0.0, 0.0]) | None if texture.is_some() => [1.0; 3],
+                color => color.unwrap_or(Paint::CLAY),
+            },
+            base_texture: texture,
+            emission: if emission == [0.0; 3] && emission_texture.is_some() { [1.0; 3] } else { emission },
+            emission_texture,
+            ..Material::default()
+        }
+    }
+
+    /// A texture statement: options, then the file's name, which may hold blanks.
+    fn texture(&mut self, statement: &str) -> Option<Texture> {
+        let mut words = statement.split_whitespace().peekable();
+        let (mut scale, mut offset) = (DVec2::ONE, DVec2::ZERO);
+        let mut wrap = Wrap::Repeat;
+        let mut rest = statement.trim_start();
+        while let Some(option) = words.next_if(|w| w.starts_with('-')) {
+            let mut values = Vec::new();
+            let most = match option {
+                "-o" | "-s" | "-t" => 3,
+                "-mm" => 2,
+                _ => 1,
+            };
+            while values.len() < most {
+                let is_number = |w: &&str| w.parse::<f64>().is_ok();
+                match words.next_if(|w| is_number(w) || (most == 1 && values.is_empty())) {
+                    Some(value) => values.push(value),
+                    None => break,
+                }
+            }
+            for word in std::iter::once(&option).chain(&values) {
+                rest = rest.strip_prefix(word).unwrap_or(rest).trim_start();
+            }
+            let number = |i: usize, usual: f64| values.get(i).and_then(|v| v.parse().ok()).unwrap_or(usual);
+            match option {
+                "-s" => scale = DVec2::new(number(0, 1.0), number(1, 1.0)),
+                "-o" => offset = DVec2::new(number(0, 0.0), number(1, 0.0)),
+                "-clamp" if values == ["on"] => wrap = Wrap::Clamp,
+                _ => {}
+            }
+        }
+        let name = rest.trim().trim_matches('"').replace('\\', "/");
+        let file = beside(&self.folder, Path::new(&name));
+        let picture = match self.pictures.get(&file) {
+            Some(picture) => picture.clone(),
+            None => {
+                let read = (self.read)(&file).map_err(|e| e.to_string());
+                let picture = match read.and_then(|bytes| decode(&name, bytes)) {
+                    Ok(picture) => Some(Arc::new(picture)),
+                    Err(e) => {
+                        self.note(&format!("without a texture: {e}"));
+                        None
+                    }
+                };
+                self.pictures.insert(file, picture.clone());
+                picture
+            }
+        }?;
+        // MTL has s·u + o with v upwards; here v goes down.
+        let transform = DAffine2::from_scale_angle_translation(
+            scale,
+            0.0,
+            DVec2::new(offset.x, 1.0 - scale.y - offset.y),
+        );
+        Some(Texture { wrap: [wrap; 2], transform, ..Texture::of(picture) })
+    }
+
+    /// Once is enough.
+    fn note(&mut self, note: &str) {
+        note_once(&mut self.notes, note);
+    }
 }
 
 /// The text without what the parser underneath does not know: a byte order mark, comments behind statements,
@@ -197,12 +380,12 @@ mod tests {
 
     #[test]
     fn triangles_are_numbered_as_in_the_file_and_coloured_by_their_material() {
-        let mesh = import_obj(SQUARE, "newmtl red\nKd 0.7 0.1 0.2\n", "square.obj").unwrap().mesh;
+        let mesh = import_obj(SQUARE, "newmtl red\nKd 0.7 0.1 0.2\n", "square.obj").unwrap().into_mesh();
         assert_eq!(mesh.triangles.len(), 3);
-        let Paint::Faces(colors) = &mesh.paint else { panic!("{:?}", mesh.paint) };
-        assert_eq!(colors[0], [0.7, 0.1, 0.2]);
-        assert_eq!(colors[1], colors[0]);
-        assert_ne!(colors[2], colors[0]);
+        let color = |t: usize| mesh.material_of(t).unwrap().base_color;
+        assert_eq!(color(0), [0.7, 0.1, 0.2]);
+        assert_eq!(color(1), color(0));
+        assert_ne!(color(2), color(0));
         assert_eq!(mesh.corners(0).map(|c| (c.x, c.y)), [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]);
     }
 
@@ -231,14 +414,14 @@ mod tests {
     #[test]
     fn what_other_programs_write_is_read() {
         let text = "\u{feff}v 0 0 0 # origin\r\nv 1 0 0 1 0 0\r\nv 0 1 \\\r\n0\r\nf 1 2 \\\r\n 3 # all\r\n";
-        let mesh = import_obj(text, "", "a.obj").unwrap().mesh;
+        let mesh = import_obj(text, "", "a.obj").unwrap().into_mesh();
         assert_eq!(mesh.corners(0), [glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y]);
     }
 
     #[test]
     fn vertex_colours_are_read() {
         let text = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n";
-        let mesh = import_obj(text, "", "a.obj").unwrap().mesh;
+        let mesh = import_obj(text, "", "a.obj").unwrap().into_mesh();
         assert_eq!(mesh.paint.at(0, [0, 1, 2], [0.5, 0.25, 0.25]), [0.5, 0.25, 0.25]);
     }
 }

@@ -1,0 +1,336 @@
+use super::super::{ImportError, Imported, Part, ReadFile, note_once, without_textures};
+use super::buffers::{Buffers, INDEX_TYPES, allowed_types};
+use super::extras::Extras;
+use super::motion::{Animated, placement};
+use super::surface::Surfaces;
+use crate::relativity::Motion;
+use crate::scene::{Aim, Clip, Joint, Mesh, Paint, Projection, View};
+use glam::{DAffine3, DVec3};
+use gltf::mesh::Mode;
+use std::path::Path;
+use terrell_geodesic::{Celerity, Event, FourVector, World};
+
+/// A file on its way to parts.
+pub(super) struct Reader {
+    name: String,
+    buffers: Buffers,
+    surfaces: Surfaces,
+    animated: Animated,
+    /// Whether vectors in extras are in axes whose z is up.
+    z_up: bool,
+    parts: Vec<Part>,
+    view: Option<View>,
+    notes: Vec<String>,
+    /// Whether any primitive has a material or vertex colours.
+    colored: bool,
+    visited: Vec<bool>,
+}
+
+/// Where the children of a node stand.
+#[derive(Clone)]
+struct Place {
+    /// The part that is, or none that has a mesh yet.
+    part: Option<usize>,
+    /// What it is called, once it has one.
+    name: String,
+    motion: Motion,
+    /// Placements down to the last animated one, if any is.
+    joints: Vec<Joint>,
+    /// Within the last animated placement, or within the rest frame.
+    within: DAffine3,
+}
+
+impl Reader {
+    pub fn new(
+        file: &gltf::Gltf,
+        buffers: Buffers,
+        path: &Path,
+        read: ReadFile<'_>,
+    ) -> Result<Self, ImportError> {
+        let fault = |message| ImportError::Contents { path: path.to_owned(), line: None, message };
+        let mut notes = Vec::new();
+        let surfaces = Surfaces::read(file, &buffers, path, read, &mut notes);
+        let animated = Animated::read(file, &buffers, &mut notes).map_err(fault)?;
+        let generator = file.document.as_json().asset.generator.as_deref().unwrap_or_default();
+        Ok(Self {
+            name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+            buffers,
+            surfaces,
+            animated,
+            z_up: generator.contains("Blender"),
+            parts: Vec::new(),
+            view: None,
+            notes,
+            colored: false,
+            visited: vec![false; file.nodes().len()],
+        })
+    }
+
+    /// The default scene, else the first, else all meshes.
+    pub fn scene(mut self, file: &gltf::Gltf) -> Result<Imported, String> {
+        let still = Place {
+            part: None,
+            name: self.name.clone(),
+            motion: Motion::at_rest(DVec3::ZERO),
+            joints: Vec::new(),
+            within: DAffine3::IDENTITY,
+        };
+        match file.default_scene().or_else(|| file.scenes().next()) {
+            Some(scene) => {
+                if file.scenes().len() > 1 {
+                    let name = scene.name().map_or_else(|| scene.index().to_string(), |n| format!("'{n}'"));
+                    self.note(&format!("of {} scenes, {name} is shown", file.scenes().len()));
+                }
+                let mut waiting: Vec<_> = scene.nodes().map(|node| (node, still.clone())).collect();
+                waiting.reverse();
+                self.trees(waiting)?;
+            }
+            None => {
+                let mut place = still;
+                for mesh in file.meshes() {
+                    self.mesh(&mesh, &mut place)?;
+                }
+            }
+        }
+        self.finish()
+    }
+
+    /// Trees of nodes, as deep as they may be; the last is next.
+    fn trees<'a>(&mut self, mut waiting: Vec<(gltf::Node<'a>, Place)>) -> Result<(), String> {
+        // What is still belongs together, wherever it is in the tree.
+        let mut still = None;
+        while let Some((node, mut place)) = waiting.pop() {
+            // The format allows only trees; anything else could go round in circles.
+            if std::mem::replace(&mut self.visited[node.index()], true) {
+                return Err(format!("node {} has two parents", node.index()));
+            }
+            let fault = |e: String| format!("node {}: extras: {e}", named(&node));
+            let extras = Extras::read(node.extras(), self.z_up).map_err(fault)?;
+            if let Some(celerity) = extras.celerity {
+                if self.z_up {
+                    self.note("velocities are taken in Blender's axes (z up), as Blender wrote the file");
+                }
+                self.set_off(&mut place, &node, celerity, extras.time)?;
+            }
+            let own = placement(&node);
+            match self.animated.joint(&node) {
+                Some(joint) => {
+                    place.joints.extend([Joint::Fixed(place.within), joint]);
+                    (place.part, place.within) = (None, DAffine3::IDENTITY);
+                    place.name = named(&node);
+                }
+                None => place.within = place.within * own,
+            }
+            let is_still = place.joints.is_empty() && place.motion == Motion::at_rest(DVec3::ZERO);
+            if is_still {
+                place.part = still;
+            }
+            if let Some(mesh) = node.mesh() {
+                self.mesh(&mesh, &mut place)?;
+            }
+            if is_still {
+                still = place.part;
+            }
+            if node.skin().is_some() {
+                self.note("skins are not animated: the mesh is drawn as it was bound");
+            }
+            if node.light().is_some() {
+                self.note("lamps are left out: surfaces shine by themselves");
+            }
+            if let Some(camera) = node.camera() {
+                self.camera(&camera, &place, &extras)?;
+            }
+            // Children in order, before siblings.
+            let first = waiting.len();
+            waiting.extend(node.children().map(|child| (child, place.clone())));
+            waiting[first..].reverse();
+        }
+        Ok(())
+    }
+
+    /// Makes a node and all below it a body of its own: its rest frame's origin is where the node is.
+    fn set_off(
+        &self,
+        place: &mut Place,
+        node: &gltf::Node<'_>,
+        celerity: Celerity,
+        time: f64,
+    ) -> Result<(), String> {
+        if !place.joints.is_empty() {
+            return Err(format!(
+                "node {} has a velocity of its own, but hangs on an animated node; take one of the two off",
+                named(node)
+            ));
+        }
+        let at = (place.within * placement(node)).translation;
+        let event = event(&place.motion, at);
+        let origin = Event::at(time + event.t(), event.position());
+        place.within = DAffine3::from_translation(-at) * place.within;
+        place.motion = Motion { celerity, origin };
+        (place.part, place.name) = (None, named(node));
+        Ok(())
+    }
+
+    fn mesh(&mut self, mesh: &gltf::Mesh<'_>, place: &mut Place) -> Result<(), String> {
+        for primitive in mesh.primitives() {
+            let Some(read) = self.primitive(mesh, &primitive)? else { continue };
+            let part = match place.part {
+                Some(part) => part,
+                None => {
+                    let clip = (!place.joints.is_empty()).then(|| Clip::new(place.joints.clone()));
+                    let name = self.unused(&place.name);
+                    let (motion, mesh) = (place.motion, Mesh::default());
+                    self.parts.push(Part { name, mesh, motion, clip });
+                    *place.part.insert(self.parts.len() - 1)
+                }
+            };
+            let whole = &mut self.parts[part].mesh;
+            if whole.vertex_count() + read.vertex_count() > u32::MAX as usize {
+                return Err("it has more than 4 294 967 295 vertices".into());
+            }
+            whole.append(read.placed(&place.within));
+        }
+        Ok(())
+    }
+
+    /// A name no part has yet.
+    fn unused(&self, name: &str) -> String {
+        let taken = |name: &str| self.parts.iter().any(|p| p.name == name);
+        if !taken(name) {
+            return name.to_owned();
+        }
+        (self.parts.len()..).map(|i| format!("{name}.{i}")).find(|n| !taken(n)).unwrap_or_default()
+    }
+
+    fn primitive(
+        &mut self,
+        mesh: &gltf::Mesh<'_>,
+        primitive: &gltf::Primitive<'_>,
+    ) -> Result<Option<Mesh>, String> {
+        if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
+            self.note("points and lines are not drawn");
+            return Ok(None);
+        }
+        for (semantic, accessor) in primitive.attributes() {
+            self.buffers.check(&accessor, &semantic.to_string(), allowed_types(&semantic))?;
+        }
+        if let Some(accessor) = primitive.indices() {
+            self.buffers.check(&accessor, "indices", &INDEX_TYPES)?;
+        }
+        let given = primitive.material().index();
+        let mut material = given.unwrap_or(self.surfaces.materials.len() - 1);
+        let Some(&uv_set) = self.surfaces.uv_sets.get(material) else {
+            return Err(format!("mesh {} is of material {material}, which is not there", mesh.index()));
+        };
+        let buffers = &self.buffers;
+        let reader = primitive.reader(|buffer| buffers.get(&buffer));
+        let Some(positions) = reader.read_positions() else {
+            return Err(format!("a primitive of mesh {} has no positions", mesh.index()));
+        };
+        let vertices: Vec<_> = positions.map(|p| glam::Vec3::from_array(p).as_dvec3()).collect();
+        let indices: Vec<u32> = match reader.read_indices() {
+            Some(indices) => indices.into_u32().collect(),
+            None => (0..vertices.len() as u32).collect(),
+        };
+        let triangles: Vec<[u32; 3]> = match primitive.mode() {
+            Mode::TriangleStrip => {
+                let turned = |(i, t): (usize, &[u32])| {
+                    if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }
+                };
+                indices.windows(3).enumerate().map(turned).collect()
+            }
+            Mode::TriangleFan => {
+                indices.get(1..).unwrap_or_default().windows(2).map(|t| [indices[0], t[0], t[1]]).collect()
+            }
+            _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+        };
+        let paint = match reader.read_colors(0) {
+            Some(colors) => Paint::Vertices(colors.into_rgb_f32().collect()),
+            None => Paint::Uniform([1.0; 3]),
+        };
+        self.colored |= given.is_some() || matches!(paint, Paint::Vertices(_));
+        let uv: Vec<_> = reader.read_tex_coords(uv_set).map(|uv| uv.into_f32().collect()).unwrap_or_default();
+        let mut out = Mesh {
+            paint,
+            normals: reader.read_normals().map(Iterator::collect).unwrap_or_default(),
+            uv,
+            ..Mesh::new(&vertices, triangles)
+        };
+        if out.triangles.is_empty() {
+            return Ok(None);
+        }
+        out.check().map_err(|e| format!("mesh {}: {e}", mesh.index()))?;
+        if out.uv.is_empty() && self.surfaces.materials[material].is_textured() {
+            self.note("textures without texture coordinates are left out");
+            material = without_textures(&mut self.surfaces.materials, material);
+        }
+        out.material = vec![material as u32; out.triangles.len()];
+        Ok(Some(out))
+    }
+
+    /// The first camera is the view.
+    fn camera(&mut self, camera: &gltf::Camera<'_>, place: &Place, extras: &Extras) -> Result<(), String> {
+        if self.view.is_some() {
+            self.note("of several cameras the first is used");
+            return Ok(());
+        }
+        let gltf::camera::Projection::Perspective(lens) = camera.projection() else {
+            self.note("a camera without perspective is left out");
+            return Ok(());
+        };
+        if !place.joints.is_empty() {
+            self.note("the camera's animation is not followed: it stays as at its beginning");
+        }
+        let joints = Clip::new(place.joints.clone());
+        let within = joints.pose(0.0) * place.within;
+        let event = event(&place.motion, within.translation);
+        // With a velocity, it is the time of its motion, and in there already.
+        let time = if extras.celerity.is_some() { 0.0 } else { extras.time };
+        let direction = |v: DVec3| within.transform_vector3(v);
+        self.view = Some(View {
+            event: Event::at(event.t() + time, event.position()),
+            celerity: place.motion.celerity,
+            aim: Aim::Forward(direction(-DVec3::Z)),
+            up: direction(DVec3::Y),
+            projection: Projection::Pinhole,
+            fov_deg: Some(f64::from(lens.yfov()).to_degrees()),
+            nearest: extras.nearest.clone(),
+            ..View::default()
+        });
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Imported, String> {
+        for part in &mut self.parts {
+            // Of all materials those it uses, in their order.
+            let mut new = vec![None; self.surfaces.materials.len()];
+            for index in &mut part.mesh.material {
+                let old = *index as usize;
+                *index = *new[old].get_or_insert_with(|| {
+                    part.mesh.materials.push(self.surfaces.materials[old].clone());
+                    part.mesh.materials.len() as u32 - 1
+                });
+            }
+            if !self.colored {
+                part.mesh.paint_as_clay();
+            }
+        }
+        if !self.colored {
+            self.note("the mesh has no colours; painted in clay by the direction its faces look");
+        }
+        Ok(Imported { parts: self.parts, view: self.view, notes: self.notes })
+    }
+
+    fn note(&mut self, note: &str) {
+        note_once(&mut self.notes, note);
+    }
+}
+
+fn named(node: &gltf::Node<'_>) -> String {
+    node.name().map_or_else(|| format!("node{}", node.index()), str::to_owned)
+}
+
+/// Where a point of a body's rest frame is at rest-frame time 0.
+fn event(motion: &Motion, x_rest: DVec3) -> Event<World> {
+    motion.origin + motion.world_from_rest::<f64>() * FourVector::from_parts(0.0, x_rest)
+}
