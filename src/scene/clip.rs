@@ -81,7 +81,7 @@ impl Blend for DQuat {
 
     fn sum(terms: [(f64, Self); 4]) -> Self {
         let mut sum = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
-        terms.into_iter().for_each(|(w, v)| sum = sum + v * w);
+        terms.into_iter().for_each(|(w, v)| sum += v * w);
         if sum.length_squared() > 0.0 { sum.normalize() } else { DQuat::IDENTITY }
     }
 

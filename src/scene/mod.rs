@@ -87,8 +87,7 @@ impl Scene {
         for body in &self.bodies {
             if let (Some(clip), Some(bounds)) = (&body.clip, body.mesh.bounds()) {
                 let speed = clip.greatest_speed(bounds);
-                // Also true for NaN.
-                if !(speed <= Clip::FASTEST) {
+                if speed > Clip::FASTEST || speed.is_nan() {
                     return Err(TooFast { body: body.name.clone(), speed });
                 }
             }

@@ -174,7 +174,7 @@ impl Texture {
         let xy = a.x * a.y + b.x * b.y;
         let (mean, half) = (0.5 * (xx + yy), (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt());
         let (long, short) = ((mean + half).max(0.0).sqrt(), (mean - half).max(0.0).sqrt());
-        if !(long > 1.0) {
+        if long <= 1.0 || long.is_nan() {
             return if self.blocky {
                 levels[0].block(at, self.wrap)
             } else {
@@ -210,7 +210,7 @@ mod tests {
     use super::*;
 
     fn checks(size: u32) -> Texture {
-        let texel = |i: u32| [if (i % size + i / size) % 2 == 0 { 255 } else { 0 }; 3];
+        let texel = |i: u32| [if (i % size + i / size).is_multiple_of(2) { 255 } else { 0 }; 3];
         Texture::of(Arc::new(
             Picture::new("checks", size, size, (0..size * size).map(texel).collect()).unwrap(),
         ))
@@ -243,7 +243,8 @@ mod tests {
         let far = checks.at(DVec2::new(0.3, 0.7), [DVec2::X, DVec2::Y]);
         assert!((far[0] - 0.5).abs() < 0.01, "{far:?}");
         // Slanting: many texels one way, a tenth of one the other, along a row of one colour each.
-        let stripes: Vec<_> = (0..64u32 * 64).map(|i| [if i / 64 % 2 == 0 { 255 } else { 0 }; 3]).collect();
+        let stripes: Vec<_> =
+            (0..64u32 * 64).map(|i| [if (i / 64).is_multiple_of(2) { 255 } else { 0 }; 3]).collect();
         let stripes = Texture::of(Arc::new(Picture::new("s", 64, 64, stripes).unwrap()));
         let along = stripes.at(centre(20.0, 4.0), [DVec2::X * (14.0 / 64.0), DVec2::Y * (0.1 / 64.0)]);
         assert!(along[0] > 0.99, "{along:?}");

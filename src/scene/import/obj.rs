@@ -190,13 +190,7 @@ impl Library<'_> {
         let texture = source.diffuse_texture.as_deref().and_then(|map| self.texture(map));
         let other = |key: &str| source.unknown_param.get(key).map(String::as_str);
         let emission_texture = other("map_Ke").and_then(|map| self.texture(map));
-        let emission: Vec<f32> =
-            other("Ke").into_iter().flat_map(str::split_whitespace).filter_map(|v| v.parse().ok()).collect();
-        let emission = match emission[..] {
-            [r, g, b, ..] if [r, g, b].iter().all(|v| v.is_finite()) => [r, g, b],
-            _ if emission_texture.is_some() => [1.0; 3],
-            _ => [0.0; 3],
-        };
+        let emission = source.emissive.map_or([0.0; 3], |c| c.map(|v| v as f32));
         if source.dissolve.is_some_and(|d| d < 1.0) {
             self.note("transparency is not drawn");
         }
@@ -423,5 +417,59 @@ mod tests {
         let text = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n";
         let mesh = import_obj(text, "", "a.obj").unwrap().into_mesh();
         assert_eq!(mesh.paint.at(0, [0, 1, 2], [0.5, 0.25, 0.25]), [0.5, 0.25, 0.25]);
+    }
+
+    /// Area, with its sign by the direction it faces along z.
+    fn area(mesh: &Mesh) -> f64 {
+        let of = |[a, b, c]: [glam::DVec3; 3]| 0.5 * (b - a).cross(c - a).z;
+        (0..mesh.triangles.len()).map(|t| of(mesh.corners(t))).sum()
+    }
+
+    #[test]
+    fn polygons_that_turn_both_ways_keep_their_shape() {
+        // An L, a frame with a slit from its hole to its rim, the L the other way round.
+        let l = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n";
+        let frame = "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 0 3 0\nv 1 1 0\nv 1 2 0\nv 2 2 0\nv 2 1 0\n";
+        for (text, expected) in [
+            (format!("{l}f 1 2 3 4 5 6\n"), 3.0),
+            (format!("{l}f 4 5 6 1 2 3\n"), 3.0),
+            (format!("{l}f 6 5 4 3 2 1\n"), -3.0),
+            (format!("{frame}f 1 2 3 4 1 5 6 7 8 5\n"), 8.0),
+        ] {
+            let mesh = import_obj(&text, "", "l.obj").unwrap().into_mesh();
+            assert!((area(&mesh) - expected).abs() < 1e-12, "{text}: {}", area(&mesh));
+            let covered: f64 = (0..mesh.triangles.len())
+                .map(|t| mesh.corners(t))
+                .map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length())
+                .sum();
+            assert!((covered - expected.abs()).abs() < 1e-12, "{text}: nothing twice, {covered}");
+        }
+    }
+
+    #[test]
+    fn textures_are_read_with_their_options() {
+        let mut png = Vec::new();
+        use image::ImageEncoder;
+        image::codecs::png::PngEncoder::new(&mut png)
+            .write_image(&[255, 0, 0, 0, 0, 255], 1, 2, image::ExtendedColorType::Rgb8)
+            .unwrap();
+        let mtl = "newmtl a\nKd 0 0 0\nmap_Kd -s 2 3 1 -o 0.5 0 -clamp on -bm 1 my pictures\\a b.png\nKe 0.1 0.2 0.3\n";
+        let obj =
+            "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
+        let asked = RefCell::new(Vec::new());
+        let read = |path: &Path| {
+            asked.borrow_mut().push(path.to_owned());
+            Ok(if path.ends_with("a.mtl") { mtl.as_bytes().to_vec() } else { png.clone() })
+        };
+        let imported = parse(obj.as_bytes(), Path::new("in/a.obj"), &read).unwrap();
+        assert_eq!(asked.borrow()[1], Path::new("in/my pictures/a b.png"));
+        let mesh = imported.into_mesh();
+        let material = mesh.material_of(0).unwrap();
+        assert_eq!((material.base_color, material.emission), ([1.0; 3], [0.1, 0.2, 0.3]));
+        let texture = material.base_texture.as_ref().unwrap();
+        assert_eq!(texture.wrap, [Wrap::Clamp; 2]);
+        // (u, v) = (0, 1), counted from below, is our (0, 0): 2·0 + 0.5 and, from above, 1 − (3·1 + 0).
+        assert_eq!(mesh.corner_uv(0).unwrap()[2], DVec2::ZERO);
+        assert_eq!(texture.transform.transform_point2(DVec2::ZERO), DVec2::new(0.5, -2.0));
     }
 }

@@ -88,14 +88,7 @@ mod tests {
     fn triangle(count: usize, extra: &str) -> String {
         let floats: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
         let bytes: Vec<u8> = floats.iter().flat_map(|f| f.to_le_bytes()).collect();
-        const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        let text: String = bytes
-            .chunks(3)
-            .flat_map(|c| {
-                let n = u32::from(c[0]) << 16 | u32::from(c[1]) << 8 | u32::from(c[2]);
-                [18, 12, 6, 0].map(|s| char::from(DIGITS[(n >> s & 63) as usize]))
-            })
-            .collect();
+        let text = base64(&bytes);
         format!(
             r#"{{"asset": {{"version": "2.0"}}, {extra} "scene": 0, "scenes": [{{"nodes": [0]}}],
             "nodes": [{{"translation": [1, 2, 3], "children": [1]}}, {{"scale": [2, 2, 2], "mesh": 0}}],
@@ -150,5 +143,176 @@ mod tests {
         ] {
             assert!(parse(&bytes, Path::new("a.glb"), &|_| Ok(vec![])).is_err());
         }
+    }
+
+    fn base64(bytes: &[u8]) -> String {
+        const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        let digits = |c: &[u8]| {
+            let byte = |i: usize| u32::from(c.get(i).copied().unwrap_or(0));
+            let n = byte(0) << 16 | byte(1) << 8 | byte(2);
+            let text: String =
+                [18, 12, 6, 0].iter().map(|s| char::from(DIGITS[(n >> s & 63) as usize])).collect();
+            text[..=c.len()].to_owned() + &"==="[c.len()..]
+        };
+        bytes.chunks(3).map(digits).collect()
+    }
+
+    /// A file of the triangle above with texture coordinates, whose buffer also holds a ramp of times (0, 1, 2) and
+    /// three quarter turns about z.
+    fn file(json: &str) -> Result<Imported, ImportError> {
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let uv = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+        let times = [0.0, 1.0, 2.0];
+        let turns = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, half, half, 0.0, 0.0, 1.0, 0.0];
+        let floats = [&corners[..], &uv, &times, &turns].concat();
+        let bytes: Vec<u8> = floats.iter().flat_map(|f: &f32| f.to_le_bytes()).collect();
+        let mut png = Vec::new();
+        use image::ImageEncoder;
+        image::codecs::png::PngEncoder::new(&mut png)
+            .write_image(&[255, 0, 0, 0, 255, 0], 2, 1, image::ExtendedColorType::Rgb8)
+            .unwrap();
+        load(&format!(
+            r#"{{"asset": {{"version": "2.0"}},
+            "accessors": [
+              {{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}},
+              {{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}},
+              {{"bufferView": 2, "componentType": 5126, "count": 3, "type": "SCALAR", "min": [0], "max": [2]}},
+              {{"bufferView": 3, "componentType": 5126, "count": 3, "type": "VEC4"}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 36}}, {{"buffer": 0, "byteOffset": 36, "byteLength": 24}},
+              {{"buffer": 0, "byteOffset": 60, "byteLength": 12}}, {{"buffer": 0, "byteOffset": 72, "byteLength": 48}}],
+            "buffers": [{{"byteLength": 120, "uri": "data:application/octet-stream;base64,{}"}}],
+            "images": [{{"uri": "data:image/png;base64,{}", "name": "two"}}],
+            "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "material": 0}}]}}],
+            {json} }}"#,
+            base64(&bytes),
+            base64(&png)
+        ))
+    }
+
+    const PLAIN: &str = r#""materials": [{"doubleSided": true}]"#;
+
+    #[test]
+    fn materials_bring_textures_emission_and_transforms() {
+        let mesh = file(
+            r#""scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}],
+            "extensionsUsed": ["KHR_texture_transform", "KHR_materials_emissive_strength", "KHR_materials_unlit"],
+            "extensionsRequired": ["KHR_texture_transform"],
+            "materials": [{"name": "m", "emissiveFactor": [1, 0.5, 0], "emissiveTexture": {"index": 0},
+              "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "baseColorTexture": {"index": 0,
+                "extensions": {"KHR_texture_transform": {"offset": [0.25, 0], "rotation": 1.5707964, "scale": [2, 1]}}}},
+              "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 3}, "KHR_materials_unlit": {}}}]"#,
+        )
+        .unwrap()
+        .into_mesh();
+        let material = mesh.material_of(0).unwrap();
+        assert_eq!((material.name.as_str(), material.base_color), ("m", [0.5; 3]));
+        assert_eq!(material.emission, [3.0, 1.5, 0.0]);
+        assert!(material.unlit && material.one_sided && material.emission_texture.is_some());
+        let texture = material.base_texture.as_ref().unwrap();
+        use crate::scene::Wrap;
+        assert_eq!((texture.wrap, texture.blocky), ([Wrap::Clamp, Wrap::Mirror], true));
+        assert_eq!(texture.picture.size(), [2, 1]);
+        // The extension's own matrix: translation · rotation · scale, the rotation (cos sin; −sin cos).
+        let at = texture.transform.transform_point2(glam::DVec2::new(0.1, 0.2));
+        assert!((at - glam::DVec2::new(0.25 + 0.2, -0.2)).length() < 1e-6, "{at}");
+        // There the base is green, times a half; the emission, untransformed, red, times three.
+        let color =
+            mesh.color(0, [1.0, 0.0, 0.0], |t| t.at(glam::DVec2::new(0.1, 0.5), [glam::DVec2::ZERO; 2]));
+        assert_eq!(color, [3.0, 0.5, 0.0]);
+        assert_eq!(mesh.corner_uv(0).unwrap()[1], glam::DVec2::X);
+    }
+
+    #[test]
+    fn velocities_in_extras_make_bodies_and_move_cameras() {
+        let imported = file(&format!(
+            r#""scenes": [{{"nodes": [0, 1, 3]}}], {PLAIN},
+            "cameras": [{{"type": "perspective", "perspective": {{"yfov": 0.5, "znear": 0.1}}}}],
+            "nodes": [{{"mesh": 0, "name": "ground"}},
+              {{"name": "tram", "translation": [5, 0, 1], "rotation": [0, 0, 0.70710678, 0.70710678],
+                "children": [2], "extras": {{"velocity": [0.6, 0, 0], "time": 2}}}},
+              {{"mesh": 0, "translation": [1, 0, 0]}},
+              {{"camera": 0, "translation": [0, 1, 9], "extras": {{"gamma": 2, "direction": [0, 1, 0]}}}}]"#
+        ))
+        .unwrap();
+        assert!(imported.moves());
+        let names: Vec<_> = imported.parts.iter().map(|p| p.name.as_str()).collect();
+        assert_eq!(names, ["test", "tram"]);
+        let tram = &imported.parts[1];
+        use glam::DVec3;
+        assert!((tram.motion.celerity.vector() - DVec3::X * 0.75).length() < 1e-12);
+        assert_eq!(tram.motion.origin, terrell_geodesic::Event::new(2.0, 5.0, 0.0, 1.0));
+        // Turned by a quarter about z: what was along x is along y.
+        assert!((tram.mesh.corners(0)[0] - DVec3::Y).length() < 1e-6, "{}", tram.mesh.corners(0)[0]);
+        assert!((tram.mesh.corners(0)[1] - DVec3::Y * 2.0).length() < 1e-6);
+        let view = imported.view.as_ref().unwrap();
+        assert_eq!(view.event, terrell_geodesic::Event::new(0.0, 0.0, 1.0, 9.0));
+        assert!((view.celerity.vector() - DVec3::Y * 3f64.sqrt()).length() < 1e-12);
+        assert_eq!(view.aim, crate::scene::Aim::Forward(-DVec3::Z));
+        assert!((view.fov_deg.unwrap() - 0.5f64.to_degrees()).abs() < 1e-6);
+        // As one mesh, all of it is where the file puts it.
+        let settled = imported.into_mesh();
+        assert!((settled.corners(1)[0] - DVec3::new(5.0, 1.0, 1.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn animated_nodes_become_clips() {
+        let imported = file(&format!(
+            r#""scenes": [{{"nodes": [0]}}], {PLAIN},
+            "nodes": [{{"children": [1, 2], "translation": [0, 0, 7]}},
+              {{"mesh": 0, "name": "wheel", "translation": [1, 0, 0]}}, {{"mesh": 0}}],
+            "animations": [{{"channels": [{{"sampler": 0, "target": {{"node": 1, "path": "rotation"}}}}],
+              "samplers": [{{"input": 2, "output": 3}}]}}]"#
+        ))
+        .unwrap();
+        let names: Vec<_> = imported.parts.iter().map(|p| (p.name.as_str(), p.clip.is_some())).collect();
+        assert_eq!(names, [("wheel", true), ("test", false)]);
+        let wheel = &imported.parts[0];
+        let clip = wheel.clip.as_ref().unwrap();
+        use glam::DVec3;
+        let tip = clip.pose(1.0).transform_point3(wheel.mesh.corners(0)[1]);
+        assert!((tip - DVec3::new(1.0, 1.0, 7.0)).length() < 1e-6, "{tip}");
+        assert_eq!(clip.period, 2.0);
+        let scene = crate::scene::authored("a", imported, None, crate::scene::View::default());
+        assert!(scene.check_animations().unwrap_err().to_string().contains("'wheel'"));
+        let mut scene = scene;
+        scene.set_animation_rate(0.01);
+        assert!(scene.check_animations().is_ok());
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_by_name() {
+        for (json, part) in [
+            (
+                r#""scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "name": "n", "extras": {"velocity": [2, 0, 0]}}],
+                "materials": [{}]"#,
+                "node n: extras: velocity",
+            ),
+            (
+                r#""scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"mesh": 0, "extras": {"gamma": 2}}],
+                "materials": [{}],
+                "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}],
+                  "samplers": [{"input": 2, "output": 3}]}]"#,
+                "animated",
+            ),
+            (
+                r#""scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "materials": [{}],
+                "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                  "samplers": [{"input": 2, "output": 3}]}]"#,
+                "accessor 3",
+            ),
+        ] {
+            let message = file(json).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+        // A picture that cannot be read is said, and done without.
+        let imported = file(
+            r#""scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "textures": [{"source": 0}, {}],
+            "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 1}}}]"#,
+        )
+        .unwrap();
+        assert!(imported.notes[0].contains("without a texture"), "{:?}", imported.notes);
     }
 }

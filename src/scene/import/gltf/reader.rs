@@ -119,7 +119,7 @@ impl Reader {
                     (place.part, place.within) = (None, DAffine3::IDENTITY);
                     place.name = named(&node);
                 }
-                None => place.within = place.within * own,
+                None => place.within *= own,
             }
             let is_still = place.joints.is_empty() && place.motion == Motion::at_rest(DVec3::ZERO);
             if is_still {
