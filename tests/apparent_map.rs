@@ -338,3 +338,24 @@ fn the_boosted_wave_vector_tells_the_same_doppler_factor() {
         assert!((map.doppler_towards(n) * k.t.abs() - 1.0).abs() < 1e-14);
     }
 }
+
+/// Where a point is asked to appear, there it appears: before, abreast and beyond, at any speed, camera moving or not.
+#[test]
+fn a_point_appears_as_far_beyond_abreast_as_asked() {
+    let camera = Celerity::new(DVec3::new(0.3, -0.8, 0.1)).unwrap();
+    for celerity in [DVec3::X * 1e-6, DVec3::new(0.5, 0.2, 0.0), DVec3::new(-3.0, 1.0, 30.0)] {
+        let celerity = Celerity::new(celerity).unwrap();
+        let motion = Motion { celerity, origin: Event::new(3.0, 1.0, -2.0, 0.5) };
+        let x_rest = DVec3::new(0.4, 0.1, -0.3);
+        for observer in [Celerity::at_rest(), camera] {
+            let observer = Tetrad::new(Event::new(1.0, 0.0, 5.0, 2.0), observer, DVec3::Y, DVec3::Z).unwrap();
+            for passed in [-7.0, 0.0, 0.01, 20.0] {
+                let map = ApparentMap::new(&motion, &motion.seen_passed(x_rest, &observer, passed).unwrap());
+                let seen = map.see(x_rest).position;
+                // The event is f64: its rounding over β.
+                let tolerance = 1e-12 * (1.0 + 1.0 / map.speed()) * (1.0 + seen.length());
+                assert!((seen.dot(map.axis_observer()) - passed).abs() < tolerance, "{passed} {seen}");
+            }
+        }
+    }
+}

@@ -30,12 +30,22 @@ impl Motion {
     /// The observer `observer` becomes when it sees the rest-frame point `x_rest` abreast: at right angles to
     /// the relative motion in its own frame, which is where the point appears nearest.
     ///
-    /// In the rest frame that is cos θ′ = β, hence a proper time of Q − P/|u| from the given event, with P
-    /// the point's offset along the relative motion and Q across it.
-    ///
     /// # Errors
     /// If nothing moves.
     pub fn seen_abreast(&self, x_rest: DVec3, observer: &Tetrad) -> Result<Tetrad, NeverAbreast> {
+        self.seen_passed(x_rest, observer, 0.0)
+    }
+
+    /// The observer `observer` becomes when the rest-frame point `x_rest` *appears* `passed` beyond abreast, along
+    /// the relative motion: before it if that is negative.
+    ///
+    /// With s = `passed` and r = √(s² + Q²) its apparent distance, the inverse map x′ = γ(x + βr) says where the
+    /// observer is in the rest frame, hence a proper time of s/β + r − P/|u| from the given event, with P the
+    /// point's offset along the relative motion and Q across it.
+    ///
+    /// # Errors
+    /// If nothing moves.
+    pub fn seen_passed(&self, x_rest: DVec3, observer: &Tetrad, passed: f64) -> Result<Tetrad, NeverAbreast> {
         let whole = observer.observer_from_world::<Wide>() * self.world_from_rest::<Wide>();
         let u = whole.celerity_in_from();
         let speed = (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt();
@@ -49,6 +59,10 @@ impl Motion {
         let along = offset[0] * axis[0] + offset[1] * axis[1] + offset[2] * axis[2];
         let across = [0, 1, 2].map(|i| offset[i] - along * axis[i]);
         let across = (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]).sqrt();
-        Ok(observer.later((across - along / speed).value()))
+        let passed = Wide::from(passed);
+        let distance = (passed * passed + across * across).sqrt();
+        let gamma = (Wide::from(1.0) + speed * speed).sqrt();
+        let elapsed = passed * gamma / speed + distance - along / speed;
+        Ok(observer.later(elapsed.value()))
     }
 }

@@ -50,6 +50,7 @@ pub fn authored(name: &str, imported: Imported, celerity: Option<Celerity>, lens
             name: name.to_owned(),
             bodies: imported.parts.into_iter().map(Part::into_body).collect(),
             view,
+            animation: None,
             notes: imported.notes,
         },
     }
@@ -74,6 +75,7 @@ fn passing(
         name: name.to_owned(),
         bodies: imported.parts.into_iter().map(body).collect(),
         view,
+        animation: None,
         notes: imported.notes,
     }
 }

@@ -1,5 +1,6 @@
 //! What is there: meshes, bodies in motion, the camera; and the files they come from.
 
+mod animation;
 mod body;
 mod builtin;
 mod camera;
@@ -9,10 +10,12 @@ mod framing;
 mod import;
 mod material;
 mod mesh;
+mod path;
 pub mod shapes;
 mod texture;
 mod view;
 
+pub use animation::{Animation, AnimationError, MAX_FRAMES, Pace, STANDARD_BETA};
 pub use body::Body;
 pub use builtin::{Builtin, builtin_mesh, builtin_meshes, builtin_scenes};
 pub use camera::{Camera, Lens, LensError, MAX_PIXELS, MAX_SIDE, Projection};
@@ -22,6 +25,7 @@ pub use framing::{authored, framed};
 pub use import::{ImportError, Imported, Part, import, import_obj, is_mesh_file};
 pub use material::Material;
 pub use mesh::{Mesh, MeshError, Paint};
+pub use path::{CameraPath, Key, PathError};
 pub use texture::{MAX_TEXELS, Picture, Texture, Wrap};
 pub use view::{Aim, View, ViewError};
 
@@ -36,6 +40,8 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// The camera, before a moment is chosen.
     pub view: View,
+    /// How it is filmed, if it says so.
+    pub animation: Option<Animation>,
     /// What was passed over when reading, for people to read.
     pub notes: Vec<String>,
 }

@@ -102,7 +102,23 @@ impl View {
         }
     }
 
+    /// The view when the camera's own clock shows `clock`; it agrees with the world's at [`event`](Self::event).
+    ///
+    /// # Errors
+    /// As [`set_time`](Self::set_time).
+    pub fn at_clock(&self, clock: f64) -> Result<Self, ViewError> {
+        let start = self.event.t();
+        let mut view = self.clone();
+        view.set_time(start + (clock - start) * self.celerity.gamma())?;
+        Ok(view)
+    }
+
     pub(super) fn camera(&self, bodies: &[Body]) -> Result<Camera, ViewError> {
+        self.camera_passed(bodies, 0.0)
+    }
+
+    /// The camera when the body asked for, if any is, appears so far beyond abreast.
+    pub(super) fn camera_passed(&self, bodies: &[Body], passed: f64) -> Result<Camera, ViewError> {
         let fov_deg = self.fov_deg.unwrap_or(Self::usual_fov_deg(self.projection));
         let lens = Lens::new(self.projection, fov_deg, self.size[0], self.size[1])?;
         // Axes matter neither for the moment nor for where a point is seen.
@@ -115,7 +131,7 @@ impl View {
             };
             observer = body
                 .motion
-                .seen_abreast(body.centre(), &observer)
+                .seen_passed(body.centre(), &observer, passed)
                 .map_err(|_| ViewError::NeverPasses(name.clone()))?;
         }
         let forward = match self.aim {

@@ -1,5 +1,6 @@
 //! Scenes as TOML.
 
+mod animation;
 mod source;
 mod tables;
 
@@ -12,7 +13,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use source::{Source, VelocityKeys, did_you_mean, explain, velocity_keys};
 use std::collections::BTreeMap;
 use std::path::Path;
-use tables::{BodyTable, CameraTable, Color, MaterialTable, Scale, SceneFile};
+use tables::{BodyTable, CameraTable, Color, MaterialTable, Scale, SceneFile, Vector};
 use terrell_geodesic::TetradError;
 use toml::Spanned;
 
@@ -53,7 +54,11 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         None => View::default(),
     };
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Scene { name, bodies, view, notes })
+    let mut scene = Scene { name, bodies, view, animation: None, notes };
+    if let Some(table) = &file.animation {
+        scene.animation = Some(animation::read_animation(&source, table, &scene)?);
+    }
+    Ok(scene)
 }
 
 fn read_camera(source: &Source<'_>, table: &CameraTable) -> Result<View, SceneError> {
@@ -62,14 +67,7 @@ fn read_camera(source: &Source<'_>, table: &CameraTable) -> Result<View, SceneEr
         None => usual.projection,
         Some(word) => parse_projection(word.get_ref()).map_err(|e| source.at(word, e))?,
     };
-    let aim = match (&table.look_at, &table.forward) {
-        (Some(_), Some(forward)) => {
-            return Err(source.at(forward, "both look_at and forward are given; one is enough"));
-        }
-        (Some(point), None) => Aim::LookAt(source.vector("look_at", point)?),
-        (None, Some(forward)) => Aim::Forward(source.vector("forward", forward)?),
-        (None, None) => usual.aim,
-    };
+    let aim = read_aim(source, &table.look_at, &table.forward)?.unwrap_or(usual.aim);
     Ok(View {
         event: source.event(&table.time, &table.position)?,
         celerity: source.celerity(&velocity_keys!(table))?,
@@ -79,6 +77,21 @@ fn read_camera(source: &Source<'_>, table: &CameraTable) -> Result<View, SceneEr
         fov_deg: table.fov_deg.as_ref().map(|fov| *fov.get_ref()),
         size: table.size.as_ref().map_or(usual.size, |size| *size.get_ref()),
         nearest: table.nearest.as_ref().map(|name| name.get_ref().clone()),
+    })
+}
+
+fn read_aim(
+    source: &Source<'_>,
+    look_at: &Option<Vector>,
+    forward: &Option<Vector>,
+) -> Result<Option<Aim>, SceneError> {
+    Ok(match (look_at, forward) {
+        (Some(_), Some(forward)) => {
+            return Err(source.at(forward, "both look_at and forward are given; one is enough"));
+        }
+        (Some(point), None) => Some(Aim::LookAt(source.vector("look_at", point)?)),
+        (None, Some(forward)) => Some(Aim::Forward(source.vector("forward", forward)?)),
+        (None, None) => None,
     })
 }
 

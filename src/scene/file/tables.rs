@@ -12,6 +12,7 @@ pub(super) struct SceneFile {
     pub body: Vec<BodyTable>,
     #[serde(default)]
     pub material: BTreeMap<String, MaterialTable>,
+    pub animation: Option<AnimationTable>,
 }
 
 pub(super) type Vector = Spanned<[f64; 3]>;
@@ -82,4 +83,27 @@ pub(super) enum Color {
     Linear([f32; 3]),
     /// #rrggbb, sRGB as in a browser.
     Hex(String),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AnimationTable {
+    pub frames: Option<Spanned<u32>>,
+    pub fps: Option<Spanned<f64>>,
+    pub time: Option<Spanned<[f64; 2]>>,
+    pub apparent: Option<Spanned<String>>,
+    pub range: Option<Spanned<[f64; 2]>>,
+    #[serde(default)]
+    pub key: Vec<KeyTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeyTable {
+    pub time: Spanned<f64>,
+    pub position: Option<Vector>,
+    pub look_at: Option<Vector>,
+    pub forward: Option<Vector>,
+    pub up: Option<Vector>,
+    pub fov_deg: Option<Spanned<f64>>,
 }
