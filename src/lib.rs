@@ -41,10 +41,11 @@
 //! # Reading order
 //!
 //! [`geodesic`] (events, Lorentz maps, observers) → [`relativity`] (the map) → [`scene`] (what is there) →
-//! [`apparent`] (what it looks like) → [`raster`] → [`film`] → [`picture`]; [`mod@render`] runs them in turn.
+//! [`apparent`] (what it looks like) → [`raster`] → [`film`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in turn.
 
 pub mod apparent;
 pub mod color;
+pub mod drawing;
 pub mod film;
 pub mod picture;
 pub mod raster;

@@ -1,5 +1,6 @@
 //! parse → run → report; a file a subcommand.
 
+mod drawing;
 mod locate;
 mod render;
 mod scenes;

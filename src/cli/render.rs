@@ -1,4 +1,5 @@
 use super::Fault;
+use super::drawing::{self, DrawingFlags};
 use super::source;
 use super::values::{count, number, size, when};
 use super::velocity::VelocityFlags;
@@ -8,6 +9,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use terrell::color::Coloring;
+use terrell::drawing::Shot;
 use terrell::film::Film;
 use terrell::geodesic::{Event, World};
 use terrell::picture::{self, Format};
@@ -25,6 +27,7 @@ use terrell::scene::{Body, Camera, Projection, Scene, View};
   terrell render cube --beta 0 -o rest.png
   terrell render statue.glb --beta 0.99 --size 1920x1080 --samples 9
   terrell render gate --camera panorama --size 2000x1000 --color doppler
+  terrell render lattice --edges --axes --scale-bar --caption \"β = {beta}, γ = {gamma}\"
   terrell render street.toml --when \"nearest tram\" -o street.exr --json street.json")]
 pub struct Render {
     /// Scene: a name, a .toml file or a mesh
@@ -61,6 +64,8 @@ pub struct Render {
     /// What a pixel shows
     #[arg(long, value_enum, default_value = "geometry")]
     color: ColorFlag,
+    #[command(flatten)]
+    drawing: DrawingFlags,
     /// Write what was done, with times and counts, as JSON; - for standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -93,13 +98,14 @@ impl Render {
         if self.tolerance <= 0.0 {
             return Err(format!("--tolerance {} is not above 0 px", self.tolerance).into());
         }
-        let scene = self.scene()?;
+        let mut scene = self.scene()?;
         let camera = scene.camera()?;
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
         Format::of(&output)?;
         for path in [Some(&output), self.json.as_ref()].into_iter().flatten() {
             check_target(path)?;
         }
+        let overlay = self.drawing.overlay(&scene, &output)?;
         let options = Options {
             tolerance: self.tolerance,
             samples: self.samples,
@@ -114,7 +120,15 @@ impl Render {
         let (film, report) = render(&scene, &camera, &options, |step| progress.show(&scene, step))?;
         progress.clear();
         let before_writing = start.elapsed();
-        let picture = picture::prepare_picture(&film, &output)?;
+        let picture = match &overlay {
+            Some(overlay) => {
+                let shot = Shot { scene: &scene, camera: &camera, film: &film, tolerance: self.tolerance };
+                let (picture, notes) = drawing::prepare(overlay, &shot, &output)?;
+                scene.notes.extend(notes);
+                picture
+            }
+            None => picture::prepare_picture(&film, &output)?,
+        };
         let times = Times { read, write: start.elapsed() - before_writing, whole: start.elapsed() };
         let done =
             Done { scene: &scene, camera: &camera, options: &options, film: &film, report, output, times };

@@ -6,4 +6,4 @@ mod png;
 
 pub use exr::write_exr;
 pub use output::{Format, Pending, WriteError, prepare, prepare_picture, write};
-pub use png::{pixels_srgb, write_png};
+pub use png::{pixels_srgb, write_png, write_png_pixels};

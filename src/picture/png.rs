@@ -12,9 +12,20 @@ pub fn pixels_srgb(film: &Film) -> Vec<u8> {
 /// # Errors
 /// If the writer fails.
 pub fn write_png(film: &Film, to: impl Write) -> std::io::Result<()> {
+    write_png_pixels(film.width, film.height, &pixels_srgb(film), to)
+}
+
+/// Writes 8-bit sRGB, three bytes a pixel, as a PNG.
+///
+/// # Errors
+/// If the writer fails, or there are not three bytes a pixel.
+pub fn write_png_pixels(width: u32, height: u32, pixels: &[u8], to: impl Write) -> std::io::Result<()> {
     use image::ImageEncoder;
+    if pixels.len() as u64 != 3 * u64::from(width) * u64::from(height) {
+        return Err(std::io::Error::other("a picture needs three bytes a pixel"));
+    }
     image::codecs::png::PngEncoder::new(to)
-        .write_image(&pixels_srgb(film), film.width, film.height, image::ExtendedColorType::Rgb8)
+        .write_image(pixels, width, height, image::ExtendedColorType::Rgb8)
         .map_err(|e| match e {
             image::ImageError::IoError(e) => e,
             other => std::io::Error::other(other),

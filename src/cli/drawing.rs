@@ -1,0 +1,82 @@
+use super::Fault;
+use clap::{Args, ValueEnum};
+use std::path::Path;
+use terrell::drawing::{Caption, Edges, Overlay, OverlayOptions, Shot};
+use terrell::film::Film;
+use terrell::picture::{self, Format, Pending, WriteError};
+use terrell::scene::Scene;
+
+/// What is drawn on top of a picture.
+#[derive(Args)]
+#[command(next_help_heading = "Drawn on top (PNG only)")]
+pub struct DrawingFlags {
+    /// Draw the meshes' edges, as the curves they look like; hidden ones are not drawn [without a value: sharp]
+    #[arg(long, value_name = "WHICH", value_enum, num_args = 0..=1, default_missing_value = "sharp")]
+    edges: Option<EdgesFlag>,
+    /// Draw the world's x, y, z and the bodies' motion (v) as directions in the camera's frame, in a corner
+    #[arg(long)]
+    axes: bool,
+    /// Draw a bar of a round length, with the distance it holds for
+    ///
+    /// It is as long as that length is seen at right angles to the line of sight, in the middle of the picture, at
+    /// the apparent distance of what is seen there; if nothing is, of the nearest body whose middle is in the
+    /// picture. A panorama has none.
+    #[arg(long)]
+    scale_bar: bool,
+    /// Write a line at the lower left; give it again for another line
+    ///
+    /// {beta} and {gamma} stand for the speed and the Lorentz factor of the body that moves fastest relative to the
+    /// camera, {time} for the camera's world time, {scene} for the scene's name; {time:.2} has two decimals. {{ and
+    /// }} are braces.
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    caption: Vec<String>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum EdgesFlag {
+    /// Where surfaces end, and where they fold by more than 25°
+    Sharp,
+    /// Every triangle's
+    All,
+}
+
+impl DrawingFlags {
+    /// What to draw on the picture `output` of a scene; none if nothing.
+    pub fn overlay(&self, scene: &Scene, output: &Path) -> Result<Option<Overlay>, Fault> {
+        let caption = (!self.caption.is_empty()).then(|| Caption::parse(&self.caption.join("\n")));
+        let edges = self.edges.map(|which| match which {
+            EdgesFlag::Sharp => Edges::Sharp,
+            EdgesFlag::All => Edges::All,
+        });
+        let options = OverlayOptions {
+            edges,
+            axes: self.axes,
+            scale_bar: self.scale_bar,
+            caption: caption.transpose()?,
+        };
+        if options.is_empty() {
+            return Ok(None);
+        }
+        if Format::of(output)? == Format::Exr {
+            return Err(format!(
+                "{}: an EXR holds what was seen, and nothing can be drawn on it; write to a .png file, or leave out --edges, --axes, --scale-bar and --caption",
+                output.display()
+            )
+            .into());
+        }
+        Ok(Some(Overlay::new(scene, options)?))
+    }
+}
+
+/// Writes the picture with what is drawn on it; also what could not be drawn, for people to read.
+pub fn prepare(
+    overlay: &Overlay,
+    shot: &Shot<'_>,
+    path: &Path,
+) -> Result<(Pending, Vec<String>), WriteError> {
+    let mut pixels = picture::pixels_srgb(shot.film);
+    let notes = overlay.draw(&mut pixels, shot);
+    let Film { width, height, .. } = *shot.film;
+    let picture = picture::prepare(path, |to| picture::write_png_pixels(width, height, &pixels, to))?;
+    Ok((picture, notes))
+}

@@ -1,0 +1,19 @@
+//! What is two-dimensional, on top of a finished picture: a mesh's edges as the curves they look like, captions,
+//! the axes, a scale bar.
+//!
+//! All of it is drawn on 8-bit sRGB, after the film's light has become colour; the film only says what hides what.
+//! Sizes of letters and lines go with the picture's height.
+
+mod axes;
+mod canvas;
+mod caption;
+mod curves;
+mod mesh_edges;
+mod number;
+mod overlay;
+mod scale_bar;
+mod text;
+
+pub use caption::{Caption, CaptionError};
+pub use mesh_edges::Edges;
+pub use overlay::{NoScale, Overlay, OverlayOptions, Shot};
