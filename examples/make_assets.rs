@@ -7,7 +7,8 @@ use terrell::scene::{Mesh, Paint, shapes};
 
 fn main() -> std::io::Result<()> {
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
-    for (name, mesh) in [("cube", shapes::cube()), ("gate", shapes::gate()), ("lattice", shapes::lattice())] {
+    for (name, make) in shapes::SHIPPED {
+        let mesh = make();
         let (obj, mtl) = obj(name, &mesh);
         std::fs::write(assets.join(format!("{name}.obj")), obj)?;
         std::fs::write(assets.join(format!("{name}.mtl")), mtl)?;

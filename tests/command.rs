@@ -55,7 +55,7 @@ fn scenes_are_listed_and_can_be_started_from() {
     let folder = folder();
     let list = terrell(folder.path(), &["scenes"]).success().get_output().stdout.clone();
     let list = String::from_utf8(list).unwrap();
-    for name in ["cube", "gate", "lattice"] {
+    for name in ["cube", "gate", "lattice", "sphere", "street", "train"] {
         assert!(list.lines().any(|l| l.starts_with(name)));
         let toml = terrell(folder.path(), &["scenes", name]).success().get_output().stdout.clone();
         std::fs::write(folder.path().join("my.toml"), toml).unwrap();
@@ -281,7 +281,9 @@ fn hostile_scenes_give_pictures() {
         "never.toml",
         "[camera]\nposition = [0, 1e6, 0]\n[[body]]\nmesh = \"cube\"\nvelocity = [0.5, 0, 0]\n",
     );
-    for scene in ["odd.obj", "around.toml", "on.toml", "edge.toml", "never.toml", "gate", "lattice"] {
+    for scene in
+        ["odd.obj", "around.toml", "on.toml", "edge.toml", "never.toml", "gate", "lattice", "street", "train"]
+    {
         for camera in ["pinhole", "fisheye", "panorama"] {
             for gamma in ["1", "1.5", "1000", "1e9"] {
                 let arguments = [

@@ -20,7 +20,7 @@ impl Builtin {
     }
 }
 
-const SCENES: [Builtin; 3] = [
+const SCENES: [Builtin; 6] = [
     Builtin {
         name: "cube",
         about: "a cube passing at 0.9c, seen as it appears abreast: it seems to turn (Fig. 2)",
@@ -36,6 +36,21 @@ const SCENES: [Builtin; 3] = [
         about: "a lattice of spheres and rods passing overhead at 0.9c (Fig. 1)",
         toml: include_str!("../../assets/lattice.toml"),
     },
+    Builtin {
+        name: "sphere",
+        about: "a chequered sphere passing at 0.9c above the same at rest: a circle still, but turned",
+        toml: include_str!("../../assets/sphere.toml"),
+    },
+    Builtin {
+        name: "street",
+        about: "a street with trams and a car, at 0.5c to 0.9c in both directions, from a first-floor window",
+        toml: include_str!("../../assets/street.toml"),
+    },
+    Builtin {
+        name: "train",
+        about: "a train at 0.9c behind the pillars of a platform and before its wall",
+        toml: include_str!("../../assets/train.toml"),
+    },
 ];
 
 /// The scenes that ship.
@@ -43,12 +58,19 @@ pub fn builtin_scenes() -> &'static [Builtin] {
     &SCENES
 }
 
-/// Name, OBJ and MTL.
-const MESHES: [(&str, &str, &str); 3] = [
-    ("cube", include_str!("../../assets/cube.obj"), include_str!("../../assets/cube.mtl")),
-    ("gate", include_str!("../../assets/gate.obj"), include_str!("../../assets/gate.mtl")),
-    ("lattice", include_str!("../../assets/lattice.obj"), include_str!("../../assets/lattice.mtl")),
-];
+/// Name, OBJ and MTL of a mesh in `assets/`.
+macro_rules! meshes {
+    ($($name:literal),*) => {
+        [$((
+            $name,
+            include_str!(concat!("../../assets/", $name, ".obj")),
+            include_str!(concat!("../../assets/", $name, ".mtl")),
+        )),*]
+    };
+}
+
+const MESHES: [(&str, &str, &str); 10] =
+    meshes!["cube", "gate", "lattice", "globe", "street", "tram", "tram_green", "car", "station", "train"];
 
 /// The names of the meshes that ship.
 pub fn builtin_meshes() -> impl Iterator<Item = &'static str> + Clone {
