@@ -57,6 +57,7 @@ fn scenes_are_listed_and_can_be_started_from() {
     let list = String::from_utf8(list).unwrap();
     for name in ["cube", "gate", "lattice", "sphere", "street", "train"] {
         assert!(list.lines().any(|l| l.starts_with(name)));
+        assert!(list.lines().any(|l| l.trim() == format!("terrell render {name}")));
         let toml = terrell(folder.path(), &["scenes", name]).success().get_output().stdout.clone();
         std::fs::write(folder.path().join("my.toml"), toml).unwrap();
         let both: Vec<Vec<u8>> = [name, "my.toml"]
@@ -70,7 +71,32 @@ fn scenes_are_listed_and_can_be_started_from() {
             .collect();
         assert!(both[0] == both[1], "{name}: the same picture from its TOML");
     }
-    refused(folder.path(), &["scenes", "cuve"], &["cube"]);
+    refused(folder.path(), &["scenes", "cuve"], &["did you mean 'cube'?"]);
+    refused(folder.path(), &["scenes", "sculpture"], &["street", "train"]);
+}
+
+#[test]
+fn every_scene_has_a_thumbnail() {
+    let folder = folder();
+    let output = terrell(folder.path(), &["scenes", "--thumbnails", "some/where"]).success();
+    let said = String::from_utf8(output.get_output().stdout.clone()).unwrap();
+    for name in ["cube", "gate", "lattice", "sphere", "street", "train"] {
+        let path = Path::new("some/where").join(format!("{name}.png"));
+        assert!(said.lines().any(|l| Path::new(l) == path), "{said}");
+        let picture = image::open(folder.path().join(path)).unwrap().to_rgb8();
+        assert_eq!(picture.dimensions(), (320, 180));
+        let colors: std::collections::HashSet<_> = picture.pixels().collect();
+        assert!(colors.len() > 10, "{name}");
+    }
+    let names = || std::fs::read_dir(folder.path().join("some/where")).unwrap().count();
+    assert_eq!(names(), said.lines().count());
+    // Once more over what is there; and where no folder can be.
+    terrell(folder.path(), &["scenes", "--thumbnails", "some/where"]).success();
+    assert_eq!(names(), said.lines().count());
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    refused(folder.path(), &["scenes", "--thumbnails", "file"], &["file", "not a folder"]);
+    refused(folder.path(), &["scenes", "--thumbnails", "file/under"], &["file/under"]);
+    refused(folder.path(), &["scenes", "cube", "--thumbnails", "a"], &["--thumbnails"]);
 }
 
 #[test]

@@ -17,13 +17,13 @@ const SIZE: [u32; 2] = [1280, 720];
 fn body(name: &str, mut mesh: Mesh, beta: DVec3, origin: Event<terrell::geodesic::World>) -> Body {
     mesh.paint = Paint::Uniform([0.0; 3]);
     let motion = Motion { celerity: Celerity::from_beta(beta).unwrap(), origin };
-    Body { name: name.into(), mesh: Arc::new(mesh), motion }
+    Body { name: name.into(), mesh: Arc::new(mesh), motion, clip: None }
 }
 
 /// Seen from the origin, looking along y.
 fn scene(bodies: Vec<Body>, fov_deg: f64) -> Scene {
     let view = View { fov_deg: Some(fov_deg), size: SIZE, ..View::default() };
-    Scene { name: "test".into(), bodies, view, notes: Vec::new() }
+    Scene { name: "test".into(), bodies, view, animation: None, notes: Vec::new() }
 }
 
 fn drawn(scene: &Scene, options: OverlayOptions) -> (Camera, Film, Vec<u8>) {

@@ -28,7 +28,7 @@ use terrell::scene::{Body, Camera, Projection, Scene, View};
   terrell render statue.glb --beta 0.99 --size 1920x1080 --samples 9
   terrell render gate --camera panorama --size 2000x1000 --color doppler
   terrell render lattice --edges --axes --scale-bar --caption \"β = {beta}, γ = {gamma}\"
-  terrell render street.toml --when \"nearest tram\" -o street.exr --json street.json")]
+  terrell render street --when \"nearest tram\" -o street.exr --json street.json")]
 pub struct Render {
     /// Scene: a name, a .toml file or a mesh
     scene: String,

@@ -1,34 +1,67 @@
 use super::Fault;
 use clap::Args;
 use std::io::Write;
-use terrell::scene::builtin_scenes;
+use std::path::{Path, PathBuf};
+use terrell::film::Film;
+use terrell::picture;
+use terrell::render::{Options, render};
+use terrell::scene::{Builtin, builtin_scene, builtin_scenes};
 
-/// List the scenes that ship, or print one as TOML to start from
+/// List the scenes that ship, draw them all, or print one as TOML to start from
 #[derive(Args)]
-#[command(after_help = "Examples:\n  terrell scenes\n  terrell scenes cube > my.toml")]
+#[command(after_help = "Examples:
+  terrell scenes
+  terrell scenes cube > my.toml
+  terrell scenes --thumbnails pictures")]
 pub struct Scenes {
     /// Print this scene as TOML
     name: Option<String>,
+    /// Draw every scene, small, to DIR/NAME.png; DIR is made if it is not there
+    #[arg(long, value_name = "DIR", conflicts_with = "name")]
+    thumbnails: Option<PathBuf>,
 }
 
 impl Scenes {
     pub fn run(self) -> Result<(), Fault> {
         let mut out = std::io::stdout().lock();
-        match self.name {
-            None => {
-                for scene in builtin_scenes() {
-                    writeln!(out, "{:<10}{}", scene.name, scene.about)?;
+        if let Some(name) = self.name {
+            write!(out, "{}", builtin_scene(&name)?.toml)?;
+            return Ok(out.flush()?);
+        }
+        let drawn = self.thumbnails.map(|folder| draw_all(&folder)).transpose()?;
+        for (index, scene) in builtin_scenes().iter().enumerate() {
+            match &drawn {
+                Some(paths) => writeln!(out, "{}", paths[index].display())?,
+                None => {
+                    writeln!(out, "{:<10}{}\n{:<10}terrell render {0}", scene.name, scene.about, "")?;
                 }
-            }
-            Some(name) => {
-                let scene = builtin_scenes().iter().find(|s| s.name == name);
-                let scene = scene.ok_or_else(|| {
-                    let names: Vec<_> = builtin_scenes().iter().map(|s| s.name).collect();
-                    format!("there is no scene '{name}'; there is {}", names.join(", "))
-                })?;
-                write!(out, "{}", scene.toml)?;
             }
         }
         Ok(out.flush()?)
     }
+}
+
+/// A small picture of every scene; where they are.
+fn draw_all(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
+    if folder.exists() && !folder.is_dir() {
+        return Err(format!("cannot write to {}: it is not a folder", folder.display()).into());
+    }
+    let films = builtin_scenes().iter().map(draw).collect::<Result<Vec<_>, _>>()?;
+    std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    let path = |scene: &Builtin| folder.join(format!("{}.png", scene.name));
+    let paths: Vec<_> = builtin_scenes().iter().map(path).collect();
+    let pictures = films.iter().zip(&paths).map(|(film, path)| picture::prepare_picture(film, path));
+    // All or none.
+    let pictures = pictures.collect::<Result<Vec<_>, _>>()?;
+    for picture in pictures {
+        picture.finish()?;
+    }
+    Ok(paths)
+}
+
+fn draw(scene: &Builtin) -> Result<Film, Fault> {
+    let mut scene = scene.scene();
+    scene.view.size = [320, 180];
+    let options = Options { samples: 9, ..Options::default() };
+    Ok(render(&scene, &scene.camera()?, &options, |_| ())?.0)
 }

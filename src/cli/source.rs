@@ -3,7 +3,7 @@ use super::velocity::of_resting;
 use std::path::Path;
 use terrell::geodesic::Celerity;
 use terrell::scene::{
-    Scene, Speed, View, authored, builtin_scenes, framed, import, is_mesh_file, parse_scene,
+    Scene, Speed, View, authored, builtin_scene, framed, import, is_mesh_file, parse_scene,
 };
 
 /// SCENE on the command line: the name of a scene that ships, a TOML file, or a mesh.
@@ -25,9 +25,10 @@ pub fn open(
 }
 
 fn read(source: &str, speed: Option<Speed>, lens: &dyn Fn(&mut View)) -> Result<Scene, Fault> {
-    if let Some(builtin) = builtin_scenes().iter().find(|b| b.name == source) {
-        return with_speed(builtin.scene(), speed);
-    }
+    let missing = match builtin_scene(source) {
+        Ok(builtin) => return with_speed(builtin.scene(), speed),
+        Err(missing) => missing,
+    };
     let path = Path::new(source);
     let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     if is_toml {
@@ -48,12 +49,7 @@ fn read(source: &str, speed: Option<Speed>, lens: &dyn Fn(&mut View)) -> Result<
             None => framed(&name, imported, celerity.unwrap_or(Celerity::at_rest()), view),
         });
     }
-    let names: Vec<_> = builtin_scenes().iter().map(|b| b.name).collect();
-    let distance = |name: &&str| strsim::damerau_levenshtein(source, name);
-    let hint = match names.iter().min_by_key(|n| distance(n)) {
-        Some(name) if distance(name) <= 2 => format!("did you mean '{name}'?"),
-        _ => format!("scenes that ship: {}", names.join(", ")),
-    };
+    let hint = missing.hint;
     Err(format!("'{source}' is no scene that ships, and no .toml, .obj, .gltf or .glb file; {hint}").into())
 }
 

@@ -1,3 +1,4 @@
+use super::file::did_you_mean;
 use super::import::import_obj;
 use super::{Mesh, Scene, parse_scene};
 use std::path::Path;
@@ -38,17 +39,17 @@ const SCENES: [Builtin; 6] = [
     },
     Builtin {
         name: "sphere",
-        about: "a chequered sphere passing at 0.9c above the same at rest: a circle still, but turned",
+        about: "chequered spheres at rest, 0.5c, 0.9c and 0.99c: all outlines are circles, all are turned",
         toml: include_str!("../../assets/sphere.toml"),
     },
     Builtin {
         name: "street",
-        about: "a street with trams and a car, at 0.5c to 0.9c in both directions, from a first-floor window",
+        about: "a street with trams and cars at 0, 0.5c, 0.8c and 0.9c, in both directions",
         toml: include_str!("../../assets/street.toml"),
     },
     Builtin {
         name: "train",
-        about: "a train at 0.9c behind the pillars of a platform and before its wall",
+        about: "a train passing at 0.9c between the piers and the wall of a station: what hides what",
         toml: include_str!("../../assets/train.toml"),
     },
 ];
@@ -56,6 +57,27 @@ const SCENES: [Builtin; 6] = [
 /// The scenes that ship.
 pub fn builtin_scenes() -> &'static [Builtin] {
     &SCENES
+}
+
+/// No scene of that name ships.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no scene '{name}'; {hint}")]
+pub struct NoSuchScene {
+    /// What was asked for.
+    pub name: String,
+    /// The nearest name, or all there are.
+    pub hint: String,
+}
+
+/// A scene that ships, by name.
+///
+/// # Errors
+/// If there is none of that name.
+pub fn builtin_scene(name: &str) -> Result<&'static Builtin, NoSuchScene> {
+    SCENES.iter().find(|scene| scene.name == name).ok_or_else(|| NoSuchScene {
+        name: name.to_owned(),
+        hint: did_you_mean(name, SCENES.iter().map(|scene| scene.name)),
+    })
 }
 
 /// Name, OBJ and MTL of a mesh in `assets/`.
@@ -99,5 +121,8 @@ mod tests {
             builtin_mesh(name).unwrap().check().unwrap();
         }
         assert!(builtin_mesh("no such").is_none());
+        assert_eq!(builtin_scene("gate").unwrap().name, "gate");
+        assert_eq!(builtin_scene("stret").unwrap_err().hint, "did you mean 'street'?");
+        assert!(builtin_scene("something else").unwrap_err().hint.contains("lattice"));
     }
 }

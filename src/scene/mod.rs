@@ -17,7 +17,7 @@ mod view;
 
 pub use animation::{Animation, AnimationError, MAX_FRAMES, Pace, STANDARD_BETA};
 pub use body::Body;
-pub use builtin::{Builtin, builtin_mesh, builtin_meshes, builtin_scenes};
+pub use builtin::{Builtin, NoSuchScene, builtin_mesh, builtin_meshes, builtin_scene, builtin_scenes};
 pub use camera::{Camera, Lens, LensError, MAX_PIXELS, MAX_SIDE, Projection};
 pub use clip::{Between, Blend, Clip, Joint, Track};
 pub use file::{SceneError, parse_scene};

@@ -5,12 +5,13 @@ mod source;
 mod tables;
 
 pub use source::SceneError;
+pub(super) use source::did_you_mean;
 
 use super::import::{ImportError, import, is_mesh_file};
 use super::{Aim, Body, LensError, Part, Projection, Scene, View, ViewError, builtin_mesh, builtin_meshes};
 use crate::relativity::Motion;
 use glam::{DAffine3, DQuat, DVec3};
-use source::{Source, VelocityKeys, did_you_mean, explain, velocity_keys};
+use source::{Source, VelocityKeys, explain, velocity_keys};
 use std::collections::BTreeMap;
 use std::path::Path;
 use tables::{BodyTable, CameraTable, Color, MaterialTable, Scale, SceneFile, Vector};

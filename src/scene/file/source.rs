@@ -152,7 +152,11 @@ fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&
         .map(|(_, name)| name)
 }
 
-pub(super) fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> String {
+/// A hint at the nearest of the names, or at all of them.
+pub(in crate::scene) fn did_you_mean<'a>(
+    word: &str,
+    names: impl IntoIterator<Item = &'a str> + Clone,
+) -> String {
     match nearest(word, names.clone()) {
         Some(name) => format!("did you mean '{name}'?"),
         None => format!("known: {}", names.into_iter().collect::<Vec<_>>().join(", ")),
