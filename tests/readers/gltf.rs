@@ -389,3 +389,15 @@ fn the_whole_file_is_read() {
     assert_eq!(mesh.triangles.len(), 1 + 2 + 1);
     assert_eq!(mesh.vertex_count(), 3 + 4 + 3);
 }
+
+/// What is named many times is kept once.
+#[test]
+fn however_often() {
+    let mut json = whole(None);
+    json["buffers"] = vec![json!({"byteLength": 1}); 2000].into();
+    let bytes = glb(&[(*b"JSON", json.to_string().into_bytes()), (*b"BIN\0", vec![0; 100_000])]);
+    judge(&bytes, true);
+    let mut json = whole(Some("a.gltf"));
+    json["buffers"] = vec![json!({"byteLength": 1, "uri": "a.gltf"}); 2000].into();
+    judge(&json.to_string().into_bytes(), false);
+}

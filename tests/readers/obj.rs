@@ -196,4 +196,8 @@ fn however_long() {
     ] {
         judge(text.len(), || import_obj(&text, MTL, "a.obj"));
     }
+    // A library named a thousand times is still one.
+    let library: String = (0..1000).map(|i| format!("newmtl m{i}\nKd 1 0 0\n")).collect();
+    let text = format!("{}{start}f 1 2 3\n", "mtllib a.mtl\n".repeat(1000));
+    judge(text.len() + library.len(), || import_obj(&text, &library, "a.obj"));
 }

@@ -3,7 +3,7 @@ use super::{ImportError, Imported, Part, ReadFile, beside, note_once, without_te
 use crate::scene::{Material, Mesh, Paint, Picture, Texture, Wrap};
 use glam::{DAffine2, DVec2, DVec3};
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -26,8 +26,13 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     let notes = RefCell::new(Vec::new());
     let options = tobj::LoadOptions { single_index: true, ..tobj::LoadOptions::default() };
     let libraries = RefCell::new(path.to_owned());
+    let named = RefCell::new(BTreeSet::new());
     let load_materials = |library: &Path| {
         let library = beside(path, library);
+        // Named again, it brings nothing new.
+        if !named.borrow_mut().insert(library.clone()) {
+            return Ok(Default::default());
+        }
         match read(&library) {
             Ok(bytes) => {
                 let (text, _) = cleaned(&String::from_utf8_lossy(&bytes));

@@ -1,20 +1,34 @@
 use super::super::{ImportError, ReadFile, beside};
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Semantic;
+use std::collections::HashMap;
 use std::path::Path;
+use std::rc::Rc;
 
 /// The bytes a file's accessors lead to.
-pub(super) struct Buffers(Vec<Vec<u8>>);
+pub(super) struct Buffers(Vec<Rc<Vec<u8>>>);
 
 impl Buffers {
+    /// What several buffers name is kept once.
     pub fn read(file: &gltf::Gltf, path: &Path, read: ReadFile<'_>) -> Result<Self, ImportError> {
         let fault = |message: String| ImportError::Contents { path: path.to_owned(), line: None, message };
-        let contents = |buffer: gltf::Buffer<'_>| {
-            let contents = match buffer.source() {
-                gltf::buffer::Source::Bin => {
-                    file.blob.clone().ok_or_else(|| fault("its binary chunk is missing".into()))?
+        let mut kept: HashMap<Option<&str>, Rc<Vec<u8>>> = HashMap::new();
+        if let Some(blob) = &file.blob {
+            kept.insert(None, Rc::new(blob.clone()));
+        }
+        let contents = file.buffers().map(|buffer| {
+            let uri = match buffer.source() {
+                gltf::buffer::Source::Bin => None,
+                gltf::buffer::Source::Uri(uri) => Some(uri),
+            };
+            let contents = match (kept.get(&uri), uri) {
+                (Some(contents), _) => Rc::clone(contents),
+                (None, Some(text)) => {
+                    let contents = Rc::new(at_uri(text, path, read)?);
+                    kept.insert(uri, Rc::clone(&contents));
+                    contents
                 }
-                gltf::buffer::Source::Uri(uri) => at_uri(uri, path, read)?,
+                (None, None) => return Err(fault("its binary chunk is missing".into())),
             };
             if contents.len() < buffer.length() {
                 let (found, needed) = (contents.len(), buffer.length());
@@ -24,13 +38,13 @@ impl Buffers {
                 )));
             }
             Ok(contents)
-        };
-        Ok(Self(file.buffers().map(contents).collect::<Result<_, _>>()?))
+        });
+        Ok(Self(contents.collect::<Result<_, _>>()?))
     }
 
     /// All of a buffer.
     pub fn get(&self, buffer: &gltf::Buffer<'_>) -> Option<&[u8]> {
-        self.0.get(buffer.index()).map(Vec::as_slice)
+        self.0.get(buffer.index()).map(|contents| contents.as_slice())
     }
 
     /// The bytes of a view; none if it leads beyond its buffer.
@@ -64,8 +78,11 @@ impl Buffers {
         };
         let mut good = match accessor.view() {
             Some(view) => fits(&view, accessor.offset(), accessor.count(), accessor.size()),
-            // Zeros, as many as the file says: only as a ground for sparse values.
-            None => accessor.sparse().is_some() && accessor.count() <= MOST_ZEROS,
+            // Zeros, only as a ground for sparse values; a file has at least an index for each.
+            None => {
+                let longest = self.0.iter().map(|contents| contents.len()).max();
+                accessor.sparse().is_some() && accessor.count() <= longest.unwrap_or(0)
+            }
         };
         if let Some(sparse) = accessor.sparse() {
             let indices = sparse.indices();
@@ -151,6 +168,3 @@ pub(super) fn allowed_types(semantic: &Semantic) -> &'static [(Dimensions, DataT
         _ => &[],
     }
 }
-
-/// Vertices an accessor without a buffer may stand for.
-const MOST_ZEROS: usize = 1 << 24;
