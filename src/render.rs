@@ -70,7 +70,8 @@ pub fn render(
     for (index, body) in scene.bodies.iter().enumerate() {
         step(Step::Cutting(index));
         let map = ApparentMap::new(&body.motion, &camera.observer);
-        let left = options.most_pieces - seen.iter().map(pieces).sum::<usize>();
+        // What is not cut is drawn however much it is, and may be more than allowed already.
+        let left = options.most_pieces.saturating_sub(seen.iter().map(pieces).sum());
         let how = Subdivision { tolerance: options.tolerance, most: left };
         let fault = |e| TooManyPieces { most: options.most_pieces, ..e };
         let mesh = body.mesh_seen(&camera.observer);

@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use std::path::Path;
 use terrell::geodesic::Celerity;
+use terrell::render::{Options, render};
 use terrell::scene::{Speed, builtin_mesh, builtin_meshes, builtin_scenes, parse_scene};
 
 /// Memory that reading the meshes that ship takes, for the file only names them: once each, and a copy a body.
@@ -187,4 +188,18 @@ fn many_bodies_of_one_mesh() {
     let (scene, most) = peak(|| parse_scene(&text, Path::new("a.toml")));
     assert_eq!(scene.unwrap().bodies.len(), 1000);
     assert!(most < 2 * once + MOST_BYTES.0 * text.len(), "{most} bytes, {once} for one mesh");
+}
+
+/// A body at rest is not cut, and may have more triangles than all together may be cut into.
+#[test]
+fn more_triangles_than_pieces() {
+    let text =
+        "[[body]]\nmesh = \"globe\"\nposition = [0, 9, 0]\n[[body]]\nmesh = \"cube\"\nposition = [0, 9, 3]\n";
+    let render = |text: &str| {
+        let scene = parse_scene(text, Path::new("a.toml")).unwrap();
+        let options = Options { most_pieces: 1000, ..Options::default() };
+        render(&scene, &scene.camera().unwrap(), &options, |_| ()).map(|(_, report)| report.pieces)
+    };
+    assert!(render(text).unwrap() > 1000);
+    assert_eq!(render(&format!("{text}time = -9.5\nvelocity = [0.9, 0, 0]\n")).unwrap_err().most, 1000);
 }
