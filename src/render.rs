@@ -3,7 +3,7 @@
 use crate::apparent::{ApparentMesh, Field, Subdivision, TooManyPieces};
 use crate::color::Coloring;
 use crate::film::Film;
-use crate::raster::{Drawable, Samples, shade};
+use crate::raster::{Drawable, Samples, shade_again};
 use crate::relativity::ApparentMap;
 use crate::scene::{Camera, Mesh, Scene};
 use std::sync::Arc;
@@ -61,8 +61,24 @@ pub fn render(
     scene: &Scene,
     camera: &Camera,
     options: &Options,
-    mut step: impl FnMut(Step),
+    step: impl FnMut(Step),
 ) -> Result<(Film, Report), TooManyPieces> {
+    let mut film = Film::new(0, 0);
+    let report = render_again(scene, camera, options, &mut film, step)?;
+    Ok((film, report))
+}
+
+/// As [`render`], on a film used before.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_again(
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    film: &mut Film,
+    mut step: impl FnMut(Step),
+) -> Result<Report, TooManyPieces> {
     let field = Field::new(&camera.lens);
     let pieces = |(_, _, seen): &(ApparentMap, Arc<Mesh>, ApparentMesh)| seen.triangles.len();
     let start = Instant::now();
@@ -82,12 +98,12 @@ pub fn render(
     step(Step::Drawing);
     let drawables: Vec<_> =
         seen.iter().enumerate().map(|(body, (map, mesh, seen))| Drawable { body, mesh, map, seen }).collect();
-    let film = shade(&drawables, &camera.lens, &Samples::new(options.samples), options.coloring);
+    shade_again(&drawables, &camera.lens, &Samples::new(options.samples), options.coloring, film);
     let report = Report {
         triangles: scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum(),
         pieces: seen.iter().map(pieces).sum(),
         subdivision: cut - start,
         shading: cut.elapsed(),
     };
-    Ok((film, report))
+    Ok(report)
 }

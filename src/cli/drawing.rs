@@ -8,7 +8,7 @@ use terrell::scene::Scene;
 
 /// What is drawn on top of a picture.
 #[derive(Args)]
-#[command(next_help_heading = "Drawn on top (PNG only)")]
+#[command(next_help_heading = "Drawn on top")]
 pub struct DrawingFlags {
     /// Draw the meshes' edges, as the curves they look like; hidden ones are not drawn [without a value: sharp]
     #[arg(long, value_name = "WHICH", value_enum, num_args = 0..=1, default_missing_value = "sharp")]
@@ -41,8 +41,8 @@ enum EdgesFlag {
 }
 
 impl DrawingFlags {
-    /// What to draw on the picture `output` of a scene; none if nothing.
-    pub fn overlay(&self, scene: &Scene, output: &Path) -> Result<Option<Overlay>, Fault> {
+    /// What to draw on pictures of a scene; none if nothing.
+    pub fn overlay(&self, scene: &Scene) -> Result<Option<Overlay>, Fault> {
         let caption = (!self.caption.is_empty()).then(|| Caption::parse(&self.caption.join("\n")));
         let edges = self.edges.map(|which| match which {
             EdgesFlag::Sharp => Edges::Sharp,
@@ -54,18 +54,20 @@ impl DrawingFlags {
             scale_bar: self.scale_bar,
             caption: caption.transpose()?,
         };
-        if options.is_empty() {
-            return Ok(None);
-        }
-        if Format::of(output)? == Format::Exr {
-            return Err(format!(
-                "{}: an EXR holds what was seen, and nothing can be drawn on it; write to a .png file, or leave out --edges, --axes, --scale-bar and --caption",
-                output.display()
-            )
-            .into());
-        }
-        Ok(Some(Overlay::new(scene, options)?))
+        Ok(if options.is_empty() { None } else { Some(Overlay::new(scene, options)?) })
     }
+}
+
+/// An EXR file has what was seen, and nothing else.
+pub fn check_format(overlay: &Option<Overlay>, output: &Path) -> Result<(), Fault> {
+    if overlay.is_some() && Format::of(output)? == Format::Exr {
+        return Err(format!(
+            "{}: an EXR holds what was seen, and nothing can be drawn on it; write to a .png file, or leave out --edges, --axes, --scale-bar and --caption",
+            output.display()
+        )
+        .into());
+    }
+    Ok(())
 }
 
 /// Writes the picture with what is drawn on it; also what could not be drawn, for people to read.

@@ -1,10 +1,13 @@
 //! parse → run → report; a file a subcommand.
 
+mod animate;
 mod drawing;
 mod locate;
+mod look;
 mod render;
 mod scenes;
 mod source;
+mod summary;
 mod values;
 mod velocity;
 
@@ -22,18 +25,20 @@ struct Cli {
 const EXAMPLES: &str = "Examples:
   terrell render cube                              the cube of Fig. 2, to cube.png
   terrell render statue.glb --beta 0.9             your own mesh, passing by at 0.9c
+  terrell animate gate -o gate.mp4                 flying through a gate
   terrell render gate --color doppler -o gate.exr  float channels, Doppler factor included
   terrell locate --beta 0.9,0,0 1,2,3              where one point is seen";
 
 #[derive(Subcommand)]
 enum Command {
     Render(render::Render),
+    Animate(animate::Animate),
     Locate(locate::Locate),
     Scenes(scenes::Scenes),
 }
 
 /// What went wrong, told to people.
-pub(crate) type Fault = Box<dyn std::error::Error>;
+pub(crate) type Fault = Box<dyn std::error::Error + Send + Sync>;
 
 /// The user's mistakes.
 const MISTAKE: u8 = 2;
@@ -52,6 +57,7 @@ pub(crate) fn run() -> ExitCode {
     };
     let done = match cli.command {
         Command::Render(render) => render.run(),
+        Command::Animate(animate) => animate.run(),
         Command::Locate(locate) => locate.run(),
         Command::Scenes(scenes) => scenes.run(),
     };

@@ -1,21 +1,18 @@
 use super::Fault;
 use super::drawing::{self, DrawingFlags};
-use super::source;
-use super::values::{count, number, size, when};
-use super::velocity::VelocityFlags;
-use clap::{Args, ValueEnum};
+use super::look::LookFlags;
+use super::summary;
+use super::values::{number, when};
+use clap::Args;
 use serde_json::json;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use terrell::color::Coloring;
 use terrell::drawing::Shot;
 use terrell::film::Film;
-use terrell::geodesic::{Event, World};
 use terrell::picture::{self, Format};
-use terrell::relativity::ApparentMap;
 use terrell::render::{Options, Report, Step, render};
-use terrell::scene::{Body, Camera, Projection, Scene, View};
+use terrell::scene::{Camera, Scene};
 
 /// One picture of a scene
 ///
@@ -36,34 +33,13 @@ pub struct Render {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    velocity: VelocityFlags,
+    look: LookFlags,
     /// World time of the picture; a moving camera goes along its world line
     #[arg(long, value_name = "T", value_parser = number, conflicts_with = "when")]
     time: Option<f64>,
     /// Take the picture when a body appears abreast: "nearest BODY"
     #[arg(long, value_name = "\"nearest BODY\"", value_parser = when)]
     when: Option<String>,
-    /// Seconds of a file's own animation that pass in a unit of time; 0 stops it
-    #[arg(long, value_name = "R", value_parser = number)]
-    animation_rate: Option<f64>,
-    /// Pixels
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    size: Option<[u32; 2]>,
-    /// Field of view in degrees: vertical (pinhole, fisheye)
-    #[arg(long, value_name = "DEG", value_parser = number)]
-    fov: Option<f64>,
-    /// Projection
-    #[arg(long, value_enum)]
-    camera: Option<CameraFlag>,
-    /// Largest distance between a drawn edge and its exact image; cost grows as 1/√ for edges, 1/ for faces
-    #[arg(long, value_name = "PX", value_parser = number, default_value = "0.25")]
-    tolerance: f64,
-    /// Samples a pixel
-    #[arg(long, value_name = "N", value_parser = count, default_value = "1")]
-    samples: u32,
-    /// What a pixel shows
-    #[arg(long, value_enum, default_value = "geometry")]
-    color: ColorFlag,
     #[command(flatten)]
     drawing: DrawingFlags,
     /// Write what was done, with times and counts, as JSON; - for standard output
@@ -74,30 +50,10 @@ pub struct Render {
     quiet: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum CameraFlag {
-    /// Straight lines stay straight
-    Pinhole,
-    /// Equidistant
-    Fisheye,
-    /// Equirectangular, the whole sky
-    Panorama,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum ColorFlag {
-    /// The meshes' own colours, without shift and beaming
-    Geometry,
-    /// The Doppler factor in false colour: white 1, blue above, red below
-    Doppler,
-}
-
 impl Render {
     pub fn run(self) -> Result<(), Fault> {
         let start = Instant::now();
-        if self.tolerance <= 0.0 {
-            return Err(format!("--tolerance {} is not above 0 px", self.tolerance).into());
-        }
+        let options = self.look.options()?;
         let mut scene = self.scene()?;
         let camera = scene.camera()?;
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
@@ -105,16 +61,8 @@ impl Render {
         for path in [Some(&output), self.json.as_ref()].into_iter().flatten() {
             check_target(path)?;
         }
-        let overlay = self.drawing.overlay(&scene, &output)?;
-        let options = Options {
-            tolerance: self.tolerance,
-            samples: self.samples,
-            coloring: match self.color {
-                ColorFlag::Geometry => Coloring::Geometry,
-                ColorFlag::Doppler => Coloring::Doppler,
-            },
-            ..Options::default()
-        };
+        let overlay = self.drawing.overlay(&scene)?;
+        drawing::check_format(&overlay, &output)?;
         let read = start.elapsed();
         let mut progress = Progress::new(self.quiet);
         let (film, report) = render(&scene, &camera, &options, |step| progress.show(&scene, step))?;
@@ -122,7 +70,7 @@ impl Render {
         let before_writing = start.elapsed();
         let picture = match &overlay {
             Some(overlay) => {
-                let shot = Shot { scene: &scene, camera: &camera, film: &film, tolerance: self.tolerance };
+                let shot = Shot { scene: &scene, camera: &camera, film: &film, tolerance: options.tolerance };
                 let (picture, notes) = drawing::prepare(overlay, &shot, &output)?;
                 scene.notes.extend(notes);
                 picture
@@ -156,26 +104,9 @@ impl Render {
         Ok(())
     }
 
-    fn set_lens(&self, view: &mut View) {
-        if let Some(camera) = self.camera {
-            let projection = match camera {
-                CameraFlag::Pinhole => Projection::Pinhole,
-                CameraFlag::Fisheye => Projection::Fisheye,
-                CameraFlag::Panorama => Projection::Panorama,
-            };
-            if projection != view.projection {
-                (view.projection, view.fov_deg) = (projection, None);
-            }
-        }
-        view.fov_deg = self.fov.or(view.fov_deg);
-        view.size = self.size.unwrap_or(view.size);
-    }
-
     /// The scene, with what the flags say over what it says itself.
     fn scene(&self) -> Result<Scene, Fault> {
-        let mut scene = source::open(&self.scene, self.velocity.speed()?, self.animation_rate, |view| {
-            self.set_lens(view)
-        })?;
+        let mut scene = self.look.open(&self.scene, self.look.velocity.speed()?)?;
         let view = &mut scene.view;
         if let Some(time) = self.time {
             view.set_time(time)?;
@@ -198,7 +129,7 @@ fn is_still(scene: &Scene) -> bool {
 }
 
 /// What cannot be written to is better known before the work than after.
-fn check_target(path: &Path) -> Result<(), Fault> {
+pub fn check_target(path: &Path) -> Result<(), Fault> {
     if path.is_dir() {
         return Err(format!("cannot write {}: it is a directory", path.display()).into());
     }
@@ -264,19 +195,8 @@ struct Done<'a> {
 }
 
 impl Done<'_> {
-    /// Relative γ of every body and the camera.
-    fn gammas(&self) -> Vec<f64> {
-        let gamma = |body: &Body| ApparentMap::new(&body.motion, &self.camera.observer).gamma();
-        self.scene.bodies.iter().map(gamma).collect()
-    }
-
     fn line(&self) -> String {
-        let gammas = self.gammas();
-        let fastest = gammas.iter().copied().fold(1.0, f64::max);
-        let bodies = match gammas.len() {
-            1 => format!("1 body, γ {fastest:.4}"),
-            n => format!("{n} bodies, γ up to {fastest:.4}"),
-        };
+        let bodies = summary::bodies_in_words(&summary::gammas(self.scene, self.camera));
         let mut line = format!(
             "{}: {}x{} {}, flat spacetime, {bodies}: apparent shading on the CPU, {} triangles cut into {} for {} px, {:.0} ms\n",
             self.output.display(),
@@ -299,21 +219,6 @@ impl Done<'_> {
 
     fn summary(&self) -> serde_json::Value {
         let Self { scene, camera, options, film, report, output, times } = self;
-        let event = |e: Event<World>| {
-            let p = e.position();
-            json!([e.t(), p.x, p.y, p.z])
-        };
-        let axes = camera.observer.axes();
-        let body = |(body, gamma): (&Body, f64)| {
-            json!({
-                "name": body.name,
-                "triangles": body.mesh.triangles.len(),
-                "celerity": body.motion.celerity.vector().to_array(),
-                "origin": event(body.motion.origin),
-                "gamma_relative_to_camera": gamma,
-            })
-        };
-        let bodies: Vec<_> = scene.bodies.iter().zip(self.gammas()).map(body).collect();
         let doppler = film.doppler.iter().zip(&film.body).filter(|(_, b)| **b >= 0).map(|(d, _)| [*d, *d]);
         json!({
             "terrell": env!("CARGO_PKG_VERSION"),
@@ -323,19 +228,11 @@ impl Done<'_> {
             "method": "apparent",
             "raster": "cpu",
             "threads": rayon::current_num_threads(),
-            "color": match options.coloring { Coloring::Geometry => "geometry", Coloring::Doppler => "doppler" },
+            "color": summary::color(options.coloring),
             "tolerance_px": options.tolerance,
             "samples": options.samples,
-            "camera": {
-                "projection": camera.lens.projection().to_string(),
-                "size": [film.width, film.height],
-                "event": event(camera.observer.event()),
-                "celerity": camera.observer.celerity().vector().to_array(),
-                "right": axes[0].to_array(),
-                "up": axes[1].to_array(),
-                "forward": axes[2].to_array(),
-            },
-            "bodies": bodies,
+            "camera": summary::camera(camera),
+            "bodies": summary::bodies(scene, camera),
             "triangles": report.triangles,
             "pieces": report.pieces,
             "pixels_covered": film.covered(),
@@ -347,6 +244,7 @@ impl Done<'_> {
                 "writing": times.write.as_secs_f64(),
                 "whole": times.whole.as_secs_f64(),
             },
+            "peak_memory_bytes": summary::peak_memory_bytes(),
             "notes": scene.notes,
         })
     }

@@ -43,6 +43,11 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     numbers(text, "X,Y,Z").map(DVec3::from_array)
 }
 
+/// From and to.
+pub fn range(text: &str) -> Result<[f64; 2], String> {
+    numbers(text, "FROM,TO")
+}
+
 pub fn event(text: &str) -> Result<Event<World>, String> {
     numbers(text, "T,X,Y,Z").map(|[t, x, y, z]| Event::new(t, x, y, z))
 }

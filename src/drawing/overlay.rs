@@ -79,6 +79,11 @@ impl Overlay {
         Ok(overlay)
     }
 
+    /// What is drawn.
+    pub fn options(&self) -> &OverlayOptions {
+        &self.options
+    }
+
     fn edges_of(&self, mesh: &Arc<Mesh>, which: Edges) -> Arc<MeshEdges> {
         let known = self.meshes.iter().find(|(known, _)| Arc::ptr_eq(known, mesh));
         known.map_or_else(|| Arc::new(MeshEdges::new(mesh, which)), |(_, edges)| edges.clone())

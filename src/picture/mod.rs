@@ -1,11 +1,13 @@
 //! Films to files.
 
 mod exr;
+mod frames;
 mod movie;
 mod output;
 mod png;
 
 pub use exr::write_exr;
+pub use frames::{FrameFolder, FramesError};
 pub use movie::{Movie, MovieError, MovieFormat};
 pub use output::{Format, Pending, WriteError, prepare, prepare_picture, write};
 pub use png::{pixels_srgb, write_png, write_png_pixels};

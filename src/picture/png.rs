@@ -1,10 +1,18 @@
 use crate::color::encoded;
 use crate::film::Film;
+use rayon::prelude::*;
 use std::io::Write;
 
 /// The film as 8-bit sRGB, three bytes a pixel: clipped to 0…1 and encoded (IEC 61966-2-1).
 pub fn pixels_srgb(film: &Film) -> Vec<u8> {
-    film.color.iter().flat_map(|color| color.map(encoded)).collect()
+    let mut pixels = vec![0; 3 * film.color.len()];
+    let block = 3 * 4096;
+    pixels.par_chunks_mut(block).zip(film.color.par_chunks(block / 3)).for_each(|(pixels, colors)| {
+        for (pixel, color) in pixels.chunks_exact_mut(3).zip(colors) {
+            pixel.copy_from_slice(&color.map(encoded));
+        }
+    });
+    pixels
 }
 
 /// Writes the film's colour as a PNG.

@@ -1,4 +1,4 @@
-use super::{Body, Camera, CameraPath, Scene, Speed, View, ViewError};
+use super::{Body, Camera, CameraPath, Scene, View, ViewError};
 use crate::relativity::ApparentMap;
 use terrell_geodesic::Celerity;
 
@@ -151,11 +151,5 @@ impl Scene {
         let passed = map.see(body.centre()).position.dot(map.axis_observer());
         let view = View { nearest: Some(body.name.clone()), ..standard.view.clone() };
         view.camera_passed(&standard.bodies, passed)
-    }
-
-    /// For speed 0 in a film: what moves is put in slow motion instead, so that it still passes.
-    pub fn set_film_speed(&mut self, speed: Speed) -> Result<(), terrell_geodesic::CelerityError> {
-        let still = matches!(speed, Speed::Along(0.0));
-        self.set_speed(if still { Speed::Along(STANDARD_BETA) } else { speed })
     }
 }

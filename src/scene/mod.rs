@@ -6,6 +6,7 @@ mod builtin;
 mod camera;
 mod clip;
 mod file;
+mod fingerprint;
 mod framing;
 mod import;
 mod material;
@@ -21,6 +22,7 @@ pub use builtin::{Builtin, NoSuchScene, builtin_mesh, builtin_meshes, builtin_sc
 pub use camera::{Camera, Lens, LensError, MAX_PIXELS, MAX_SIDE, Projection};
 pub use clip::{Between, Blend, Clip, Joint, Track};
 pub use file::{SceneError, parse_scene};
+pub use fingerprint::Fingerprint;
 pub use framing::{authored, framed};
 pub use import::{ImportError, Imported, Part, import, import_obj, is_mesh_file};
 pub use material::Material;

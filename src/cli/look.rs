@@ -1,0 +1,91 @@
+use super::Fault;
+use super::source;
+use super::values::{count, number, size};
+use super::velocity::VelocityFlags;
+use clap::{Args, ValueEnum};
+use terrell::color::Coloring;
+use terrell::render::Options;
+use terrell::scene::{Projection, Scene, Speed, View};
+
+/// How a scene is looked at: what pictures and films have in common.
+#[derive(Args)]
+pub struct LookFlags {
+    #[command(flatten)]
+    pub velocity: VelocityFlags,
+    /// Seconds of a file's own animation that pass in a unit of time; 0 stops it
+    #[arg(long, value_name = "R", value_parser = number)]
+    animation_rate: Option<f64>,
+    /// Pixels
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    /// Field of view in degrees: vertical (pinhole, fisheye)
+    #[arg(long, value_name = "DEG", value_parser = number)]
+    fov: Option<f64>,
+    /// Projection
+    #[arg(long, value_enum)]
+    camera: Option<CameraFlag>,
+    /// Largest distance between a drawn edge and its exact image; cost grows as 1/√ for edges, 1/ for faces
+    #[arg(long, value_name = "PX", value_parser = number, default_value = "0.25")]
+    pub tolerance: f64,
+    /// Samples a pixel
+    #[arg(long, value_name = "N", value_parser = count, default_value = "1")]
+    samples: u32,
+    /// What a pixel shows
+    #[arg(long, value_enum, default_value = "geometry")]
+    color: ColorFlag,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum CameraFlag {
+    /// Straight lines stay straight
+    Pinhole,
+    /// Equidistant
+    Fisheye,
+    /// Equirectangular, the whole sky
+    Panorama,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ColorFlag {
+    /// The meshes' own colours, without shift and beaming
+    Geometry,
+    /// The Doppler factor in false colour: white 1, blue above, red below
+    Doppler,
+}
+
+impl LookFlags {
+    /// The scene, with what the flags say over what it says itself.
+    pub fn open(&self, scene: &str, speed: Option<Speed>) -> Result<Scene, Fault> {
+        source::open(scene, speed, self.animation_rate, |view| self.set_lens(view))
+    }
+
+    pub fn options(&self) -> Result<Options, Fault> {
+        if self.tolerance <= 0.0 {
+            return Err(format!("--tolerance {} is not above 0 px", self.tolerance).into());
+        }
+        Ok(Options {
+            tolerance: self.tolerance,
+            samples: self.samples,
+            coloring: match self.color {
+                ColorFlag::Geometry => Coloring::Geometry,
+                ColorFlag::Doppler => Coloring::Doppler,
+            },
+            ..Options::default()
+        })
+    }
+
+    fn set_lens(&self, view: &mut View) {
+        if let Some(camera) = self.camera {
+            let projection = match camera {
+                CameraFlag::Pinhole => Projection::Pinhole,
+                CameraFlag::Fisheye => Projection::Fisheye,
+                CameraFlag::Panorama => Projection::Panorama,
+            };
+            if projection != view.projection {
+                (view.projection, view.fov_deg) = (projection, None);
+            }
+        }
+        view.fov_deg = self.fov.or(view.fov_deg);
+        view.size = self.size.unwrap_or(view.size);
+    }
+}

@@ -1,0 +1,68 @@
+//! What `--json` says of scenes and cameras, whatever was made of them.
+
+use serde_json::{Value, json};
+use terrell::color::Coloring;
+use terrell::geodesic::{Event, World};
+use terrell::relativity::ApparentMap;
+use terrell::scene::{Body, Camera, Scene};
+
+/// Relative γ of every body and the camera.
+pub fn gammas(scene: &Scene, camera: &Camera) -> Vec<f64> {
+    let gamma = |body: &Body| ApparentMap::new(&body.motion, &camera.observer).gamma();
+    scene.bodies.iter().map(gamma).collect()
+}
+
+/// "1 body, γ 2.29", "3 bodies, γ up to 7.1".
+pub fn bodies_in_words(gammas: &[f64]) -> String {
+    let fastest = gammas.iter().copied().fold(1.0, f64::max);
+    match gammas.len() {
+        1 => format!("1 body, γ {fastest:.4}"),
+        n => format!("{n} bodies, γ up to {fastest:.4}"),
+    }
+}
+
+fn event(e: Event<World>) -> Value {
+    let p = e.position();
+    json!([e.t(), p.x, p.y, p.z])
+}
+
+pub fn camera(camera: &Camera) -> Value {
+    let axes = camera.observer.axes();
+    json!({
+        "projection": camera.lens.projection().to_string(),
+        "size": [camera.lens.width(), camera.lens.height()],
+        "event": event(camera.observer.event()),
+        "celerity": camera.observer.celerity().vector().to_array(),
+        "right": axes[0].to_array(),
+        "up": axes[1].to_array(),
+        "forward": axes[2].to_array(),
+    })
+}
+
+pub fn bodies(scene: &Scene, camera: &Camera) -> Value {
+    let body = |(body, gamma): (&Body, f64)| {
+        json!({
+            "name": body.name,
+            "triangles": body.mesh.triangles.len(),
+            "celerity": body.motion.celerity.vector().to_array(),
+            "origin": event(body.motion.origin),
+            "gamma_relative_to_camera": gamma,
+        })
+    };
+    scene.bodies.iter().zip(gammas(scene, camera)).map(body).collect()
+}
+
+pub fn color(coloring: Coloring) -> &'static str {
+    match coloring {
+        Coloring::Geometry => "geometry",
+        Coloring::Doppler => "doppler",
+    }
+}
+
+/// The most memory the program has held so far, bytes, where the system tells.
+pub fn peak_memory_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes * 1024)
+}
