@@ -1,4 +1,4 @@
-//! Films to files.
+//! Films to files: one to a picture, many to a movie.
 
 mod exr;
 mod frames;

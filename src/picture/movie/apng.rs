@@ -110,7 +110,7 @@ fn compressed(part: Rectangle, pixels: &[u8]) -> Result<Vec<Vec<u8>>, MovieError
     let mut encoder = png::Encoder::new(&mut file, part.width as u32, part.height as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
+    encoder.set_compression(png::Compression::Balanced);
     let mut writer = encoder.write_header().map_err(fault)?;
     writer.write_image_data(pixels).map_err(fault)?;
     writer.finish().map_err(fault)?;

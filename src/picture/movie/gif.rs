@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::io::Write;
 
 /// NeuQuant learns from about so many pixels; from more it learns little more, but takes longer.
-const LESSONS: usize = 50_000;
+const LESSONS: usize = 20_000;
 
 /// An animated GIF that loops for ever. Pixels that stay as they are are left alone.
 pub(super) struct Gif<W: Write> {
