@@ -9,7 +9,7 @@ use terrell::apparent::{ApparentMesh, Field, Subdivision};
 use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::geodesic::{Celerity, Event, Tetrad};
-use terrell::raster::{Drawable, Samples, shade_again};
+use terrell::raster::{Drawable, Samples, paint, shade, shade_again};
 use terrell::relativity::{ApparentMap, Motion, Points, PointsMut};
 use terrell::scene::{Lens, Material, Mesh, Projection, shapes};
 
@@ -137,6 +137,32 @@ fn main() {
                     100.0 * hit,
                     mesh.triangles.len() as f64 / whole / 1e3,
                     pixels / whole / 1e3,
+                );
+            });
+        }
+    }
+
+    println!(
+        "\nms, median of {REPEATS}: which triangle a pixel sees, by z-buffer and by painter, on a new film"
+    );
+    println!(
+        "{:>10} {:>7} {:>9} | {:>8} {:>8} {:>6}",
+        "triangles", "threads", "pieces", "z-buffer", "painter", "ratio"
+    );
+    for (name, mesh) in &meshes {
+        let seen = ApparentMesh::new(mesh, &map, &field, &how).unwrap();
+        for threads in [1, all] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let bodies = [Drawable { body: 0, mesh, map: &map, seen: &seen }];
+                let shaded = median_ms(|| drop(shade(&bodies, &lens, &samples, Coloring::Geometry)));
+                let painted =
+                    median_ms(|| drop(paint(&bodies, &lens, &samples, Coloring::Geometry).unwrap()));
+                println!(
+                    "{:>10} {threads:>7} {:>9} | {shaded:>8.2} {painted:>8.2} {:>6.2}",
+                    if name.is_empty() { mesh.triangles.len().to_string() } else { (*name).to_owned() },
+                    seen.triangles.len(),
+                    painted / shaded,
                 );
             });
         }

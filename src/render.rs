@@ -3,7 +3,7 @@
 use crate::apparent::{ApparentMesh, Field, Subdivision, TooManyPieces};
 use crate::color::Coloring;
 use crate::film::Film;
-use crate::raster::{Drawable, Samples, shade_again};
+use crate::raster::{Drawable, Samples, TooManyToPaint, paint, shade_again};
 use crate::relativity::ApparentMap;
 use crate::scene::{Camera, Mesh, Scene};
 use std::sync::Arc;
@@ -21,12 +21,35 @@ pub struct Options {
     pub samples: u32,
     /// What a pixel shows.
     pub coloring: Coloring,
+    /// What decides which triangle a pixel sees.
+    pub raster: Raster,
+}
+
+/// What decides which triangle a pixel sees; all else is the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Raster {
+    /// A z-buffer: exact; see [`shade`].
+    #[default]
+    Cpu,
+    /// The painter's algorithm by tiny-skia, which has its limits; see [`paint`].
+    Skia,
+}
+
+/// Why a scene could not be drawn.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The bodies would be cut into more pieces than allowed.
+    #[error(transparent)]
+    Pieces(#[from] TooManyPieces),
+    /// More pieces than can be painted.
+    #[error(transparent)]
+    Paint(#[from] TooManyToPaint),
 }
 
 impl Default for Options {
     fn default() -> Self {
         let Subdivision { tolerance, most } = Subdivision::default();
-        Self { tolerance, most_pieces: most, samples: 1, coloring: Coloring::Geometry }
+        Self { tolerance, most_pieces: most, samples: 1, coloring: Coloring::Geometry, raster: Raster::Cpu }
     }
 }
 
@@ -53,16 +76,16 @@ pub enum Step {
 }
 
 /// Draws a scene by apparent shading: every body moved to where the camera sees it (Nollert et al. 2000,
-/// Eq. 1), cut until flat triangles show it to the pixel, and drawn by a z-buffer.
+/// Eq. 1), cut until flat triangles show it to the pixel, and drawn by a z-buffer or a painter.
 ///
 /// # Errors
-/// If the bodies would be cut into more pieces than allowed.
+/// If the bodies would be cut into more pieces than allowed, or than can be painted.
 pub fn render(
     scene: &Scene,
     camera: &Camera,
     options: &Options,
     step: impl FnMut(Step),
-) -> Result<(Film, Report), TooManyPieces> {
+) -> Result<(Film, Report), RenderError> {
     let mut film = Film::new(0, 0);
     let report = render_again(scene, camera, options, &mut film, step)?;
     Ok((film, report))
@@ -78,7 +101,7 @@ pub fn render_again(
     options: &Options,
     film: &mut Film,
     mut step: impl FnMut(Step),
-) -> Result<Report, TooManyPieces> {
+) -> Result<Report, RenderError> {
     let field = Field::new(&camera.lens);
     let pieces = |(_, _, seen): &(ApparentMap, Arc<Mesh>, ApparentMesh)| seen.triangles.len();
     let start = Instant::now();
@@ -98,7 +121,11 @@ pub fn render_again(
     step(Step::Drawing);
     let drawables: Vec<_> =
         seen.iter().enumerate().map(|(body, (map, mesh, seen))| Drawable { body, mesh, map, seen }).collect();
-    shade_again(&drawables, &camera.lens, &Samples::new(options.samples), options.coloring, film);
+    let samples = Samples::new(options.samples);
+    match options.raster {
+        Raster::Cpu => shade_again(&drawables, &camera.lens, &samples, options.coloring, film),
+        Raster::Skia => *film = paint(&drawables, &camera.lens, &samples, options.coloring)?,
+    }
     let report = Report {
         triangles: scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum(),
         pieces: seen.iter().map(pieces).sum(),

@@ -506,6 +506,7 @@ impl Done<'_> {
             "output": self.output,
             "spacetime": "flat",
             "method": "apparent",
+            "raster": summary::raster(self.options.raster),
             "threads": rayon::current_num_threads(),
             "color": summary::color(self.options.coloring),
             "tolerance_px": self.options.tolerance,

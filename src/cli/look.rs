@@ -4,7 +4,7 @@ use super::values::{count, number, size};
 use super::velocity::VelocityFlags;
 use clap::{Args, ValueEnum};
 use terrell::color::Coloring;
-use terrell::render::Options;
+use terrell::render::{Options, Raster};
 use terrell::scene::{Projection, Scene, Speed, View};
 
 /// How a scene is looked at: what pictures and films have in common.
@@ -33,6 +33,9 @@ pub struct LookFlags {
     /// What a pixel shows
     #[arg(long, value_enum, default_value = "geometry")]
     color: ColorFlag,
+    /// What decides which triangle a pixel sees
+    #[arg(long, value_enum, default_value = "cpu")]
+    raster: RasterFlag,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -53,6 +56,14 @@ enum ColorFlag {
     Doppler,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+enum RasterFlag {
+    /// A z-buffer: exact
+    Cpu,
+    /// Triangles painted back to front by tiny-skia: wrong where they pass through each other or differ much in size
+    Skia,
+}
+
 impl LookFlags {
     /// The scene, with what the flags say over what it says itself.
     pub fn open(&self, scene: &str, speed: Option<Speed>) -> Result<Scene, Fault> {
@@ -69,6 +80,10 @@ impl LookFlags {
             coloring: match self.color {
                 ColorFlag::Geometry => Coloring::Geometry,
                 ColorFlag::Doppler => Coloring::Doppler,
+            },
+            raster: match self.raster {
+                RasterFlag::Cpu => Raster::Cpu,
+                RasterFlag::Skia => Raster::Skia,
             },
             ..Options::default()
         })

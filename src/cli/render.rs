@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use terrell::drawing::Shot;
 use terrell::film::Film;
 use terrell::picture::{self, Format};
-use terrell::render::{Options, Report, Step, render};
+use terrell::render::{Options, Raster, Report, Step, render};
 use terrell::scene::{Camera, Scene};
 
 /// One picture of a scene
@@ -198,11 +198,15 @@ impl Done<'_> {
     fn line(&self) -> String {
         let bodies = summary::bodies_in_words(&summary::gammas(self.scene, self.camera));
         let mut line = format!(
-            "{}: {}x{} {}, flat spacetime, {bodies}: apparent shading on the CPU, {} triangles cut into {} for {} px, {:.0} ms\n",
+            "{}: {}x{} {}, flat spacetime, {bodies}: apparent shading on the CPU{}, {} triangles cut into {} for {} px, {:.0} ms\n",
             self.output.display(),
             self.film.width,
             self.film.height,
             self.camera.lens.projection(),
+            match self.options.raster {
+                Raster::Cpu => "",
+                Raster::Skia => " (painted back to front)",
+            },
             self.report.triangles,
             self.report.pieces,
             self.options.tolerance,
@@ -226,7 +230,7 @@ impl Done<'_> {
             "output": output,
             "spacetime": "flat",
             "method": "apparent",
-            "raster": "cpu",
+            "raster": summary::raster(options.raster),
             "threads": rayon::current_num_threads(),
             "color": summary::color(options.coloring),
             "tolerance_px": options.tolerance,

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 use terrell::color::Coloring;
 use terrell::geodesic::{Event, World};
 use terrell::relativity::ApparentMap;
+use terrell::render::Raster;
 use terrell::scene::{Body, Camera, Scene};
 
 /// Relative γ of every body and the camera.
@@ -56,6 +57,13 @@ pub fn color(coloring: Coloring) -> &'static str {
     match coloring {
         Coloring::Geometry => "geometry",
         Coloring::Doppler => "doppler",
+    }
+}
+
+pub fn raster(raster: Raster) -> &'static str {
+    match raster {
+        Raster::Cpu => "cpu",
+        Raster::Skia => "skia",
     }
 }
 

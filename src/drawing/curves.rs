@@ -228,6 +228,8 @@ impl Trace<'_> {
         // The last points may be hidden: the edge ends there.
         self.hidden = 0;
         self.end_line();
+        // Specks, where an edge grazes what hides it.
+        self.lines.retain(|line| self.short || line.len() > BRIDGE);
         self.lines
     }
 }

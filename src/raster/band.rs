@@ -129,6 +129,33 @@ impl Band {
         }
     }
 
+    /// Fills the rows with what given triangles look like: the number of one for each pixel, none where
+    /// `number` says so. One call a sample; the first is the pixel's centre.
+    #[allow(clippy::too_many_arguments, reason = "one call, from the one place that has all of it")]
+    pub fn draw_known(
+        &mut self,
+        bodies: &[Drawable<'_>],
+        bins: &Bins,
+        lens: &Lens,
+        samples: &Samples,
+        index: usize,
+        coloring: Coloring,
+        top: u32,
+        number: impl Fn(usize) -> Option<u32>,
+        mut rows: Rows<'_>,
+    ) {
+        let skies: Vec<RestSky> = bodies.iter().map(|b| b.map.rest_sky()).collect();
+        let stage = Stage { bodies, skies: &skies, bins };
+        let sampling = Sampling { lens, top, offset: DVec2::from_array(samples.0[index]) };
+        self.clear(&sampling, rows.color.len());
+        for (i, triangle) in self.triangle.iter_mut().enumerate() {
+            let is_sky = self.directions.get(i).is_none_or(|n| !n.is_nan());
+            *triangle = if is_sky { number(i).unwrap_or(NONE) } else { NONE };
+        }
+        let weight = 1.0 / samples.0.len() as f32;
+        self.develop(&stage, coloring, &sampling, weight, index == 0, &mut rows);
+    }
+
     fn clear(&mut self, sampling: &Sampling<'_>, pixels: usize) {
         self.nearness.clear();
         self.nearness.resize(pixels, 0.0);

@@ -25,11 +25,7 @@ const TASK: usize = 1 << 15;
 
 impl Bins {
     pub fn new(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples) -> Self {
-        let mut first = vec![0u32];
-        for body in bodies {
-            let last = first[first.len() - 1];
-            first.push(last + body.seen.triangles.len() as u32);
-        }
+        let Self { first, .. } = Self::unbinned(bodies);
         let bounder = Bounder::new(lens, samples.range());
         let bands = lens.height().div_ceil(BAND) as usize;
         let mut tasks = Vec::new();
@@ -58,6 +54,16 @@ impl Bins {
             tasks.extend(binned);
         }
         Self { tasks, first }
+    }
+
+    /// The numbers alone, for who finds the triangles of a pixel by another way.
+    pub fn unbinned(bodies: &[Drawable<'_>]) -> Self {
+        let mut first = vec![0u32];
+        for body in bodies {
+            let last = first[first.len() - 1];
+            first.push(last + body.seen.triangles.len() as u32);
+        }
+        Self { tasks: Vec::new(), first }
     }
 
     pub fn of_band(&self, band: u32) -> impl Iterator<Item = &Binned> {

@@ -8,6 +8,8 @@
 mod band;
 mod bins;
 mod bounds;
+mod painter;
+mod polygon;
 mod triangle;
 
 use crate::apparent::ApparentMesh;
@@ -16,6 +18,7 @@ use crate::film::Film;
 use crate::relativity::ApparentMap;
 use crate::scene::{Lens, Mesh};
 use band::Band;
+pub use painter::{MOST_PAINTED, TooManyToPaint, paint};
 use rayon::prelude::*;
 
 /// A body ready to be drawn.
@@ -82,7 +85,12 @@ pub fn shade_again(
 
 fn draw(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, coloring: Coloring, film: &mut Film) {
     let bins = bins::Bins::new(bodies, lens, samples);
-    let pixels = lens.width() as usize * BAND as usize;
+    each_band(film, |band, top, out| band.draw(bodies, &bins, lens, samples, coloring, top, out));
+}
+
+/// Has the film's rows filled, a band of them a task; with the number of its first row.
+fn each_band(film: &mut Film, fill: impl Fn(&mut Band, u32, band::Rows<'_>) + Sync) {
+    let pixels = film.width as usize * BAND as usize;
     film.color
         .par_chunks_mut(pixels)
         .zip(film.distance.par_chunks_mut(pixels))
@@ -91,8 +99,7 @@ fn draw(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, coloring: Color
         .zip(film.face.par_chunks_mut(pixels))
         .enumerate()
         .for_each_init(Band::default, |band, (index, ((((color, distance), doppler), body), face))| {
-            let out = band::Rows { color, distance, doppler, body, face };
-            band.draw(bodies, &bins, lens, samples, coloring, index as u32 * BAND, out);
+            fill(band, index as u32 * BAND, band::Rows { color, distance, doppler, body, face });
         });
 }
 

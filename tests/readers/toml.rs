@@ -201,5 +201,6 @@ fn more_triangles_than_pieces() {
         render(&scene, &scene.camera().unwrap(), &options, |_| ()).map(|(_, report)| report.pieces)
     };
     assert!(render(text).unwrap() > 1000);
-    assert_eq!(render(&format!("{text}time = -9.5\nvelocity = [0.9, 0, 0]\n")).unwrap_err().most, 1000);
+    let error = render(&format!("{text}time = -9.5\nvelocity = [0.9, 0, 0]\n")).unwrap_err();
+    assert!(error.to_string().contains("more than 1000 triangles"), "{error}");
 }
