@@ -125,7 +125,7 @@ fn the_painter_differs_from_the_z_buffer_at_outlines_and_by_order() {
 
 fn body(mesh: Mesh, beta: DVec3) -> Body {
     let motion = Motion { celerity: Celerity::from_beta(beta).unwrap(), origin: Event::origin() };
-    Body { name: "body".into(), mesh: Arc::new(mesh), motion }
+    Body { name: "body".into(), mesh: Arc::new(mesh), motion, clip: None }
 }
 
 /// Everything a lens can do, with a triangle around its axis, back, seam and poles.
