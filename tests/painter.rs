@@ -159,6 +159,7 @@ fn single_triangles_are_painted_where_they_are() {
                 name: "t".into(),
                 bodies: vec![body(mesh, velocity)],
                 view: view.clone(),
+                animation: None,
                 notes: vec![],
             };
             let camera = scene.camera().unwrap();
@@ -189,6 +190,7 @@ fn a_surface_around_the_camera_has_no_seams() {
             name: "ball".into(),
             bodies: vec![body(ball, DVec3::new(0.3, 0.5, -0.2))],
             view: view.clone(),
+            animation: None,
             notes: vec![],
         };
         let camera = scene.camera().unwrap();

@@ -21,7 +21,7 @@ impl Builtin {
     }
 }
 
-const SCENES: [Builtin; 6] = [
+const SCENES: [Builtin; 7] = [
     Builtin {
         name: "cube",
         about: "a cube passing at 0.9c, seen as it appears abreast: it seems to turn (Fig. 2)",
@@ -31,6 +31,11 @@ const SCENES: [Builtin; 6] = [
         name: "gate",
         about: "inside a gate of two rows of six columns, flying through at 0.99c (Fig. 3)",
         toml: include_str!("../../assets/gate.toml"),
+    },
+    Builtin {
+        name: "gate_back",
+        about: "the same gate behind the camera, looking backward: all that lies behind is drawn together",
+        toml: include_str!("../../assets/gate_back.toml"),
     },
     Builtin {
         name: "lattice",
