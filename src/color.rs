@@ -102,7 +102,7 @@ impl Encoding {
             return 255;
         }
         // NaN, too.
-        if !(linear > DARKEST) {
+        if linear <= DARKEST || linear.is_nan() {
             return 0;
         }
         let mut code = self.codes[((linear.to_bits() - DARKEST.to_bits()) >> 15) as usize];

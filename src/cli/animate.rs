@@ -54,8 +54,9 @@ pub struct Animate {
     /// From and to, in lengths beyond the place where the body appears abreast
     #[arg(long, value_name = "S0,S1", value_parser = range)]
     range: Option<[f64; 2]>,
-    /// Put the same film in slow motion (so nothing relativistic is left) on its left, the body followed at the same
-    /// apparent places
+    /// Put the same film in slow motion (so nothing relativistic is left) on its left
+    ///
+    /// With --time everything is at the same places in both, with --apparent the body is seen at the same places.
     #[arg(long)]
     beside_standard: bool,
     #[command(flatten)]
@@ -172,9 +173,7 @@ impl Animate {
         };
         let mut panels = Vec::new();
         if self.beside_standard {
-            let standard = scene.standard();
-            let slow = |camera| scene.standard_camera(&standard, camera);
-            let slow = cameras.iter().map(slow).collect::<Result<Vec<_>, _>>()?;
+            let (standard, slow) = animation.standard(&scene)?;
             panels.push(panel(standard, slow)?);
         }
         panels.push(panel(scene, cameras)?);

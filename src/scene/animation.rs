@@ -1,6 +1,6 @@
 use super::{Body, Camera, CameraPath, Scene, View, ViewError};
 use crate::relativity::ApparentMap;
-use terrell_geodesic::Celerity;
+use terrell_geodesic::{Celerity, Event, World};
 
 /// How a scene is filmed.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,7 @@ impl Animation {
         let (low, high) = body.mesh.bounds().unwrap_or_default();
         let lens = &camera.lens;
         let half = (0.5 * f64::from(lens.width()) / lens.focal().x).min(3.0);
-        let way = across * half + (high - low).length();
+        let way = across * half + 0.5 * (high - low).length();
         let pace = Pace::Apparent { body: body.name.clone(), range: [-way, way] };
         Ok(Self { frames: 120, fps: 30.0, pace, path: None })
     }
@@ -89,25 +89,43 @@ impl Animation {
         {
             return Err(AnimationError::PathByPosition);
         }
+        (0..self.frames).map(|i| self.camera(scene, scene, 1.0, i)).collect()
+    }
+
+    /// The [standard](Scene::standard) film of the scene, and the camera of every frame: where bodies are at the
+    /// same places, if frames go by the clock; where the body followed is seen at the same places, if they go by
+    /// these.
+    ///
+    /// # Errors
+    /// As [`cameras`](Self::cameras).
+    pub fn standard(&self, scene: &Scene) -> Result<(Scene, Vec<Camera>), AnimationError> {
+        let (slow, factor) = scene.standard();
+        let cameras =
+            (0..self.frames).map(|i| self.camera(scene, &slow, factor, i)).collect::<Result<_, _>>()?;
+        Ok((slow, cameras))
+    }
+
+    /// The camera of a frame in `slow`, which is the scene slower by a factor.
+    fn camera(&self, scene: &Scene, slow: &Scene, factor: f64, i: u32) -> Result<Camera, AnimationError> {
         let last = f64::from(self.frames - 1).max(1.0);
-        let spread = |[from, to]: [f64; 2], i: u32| from + (to - from) * (f64::from(i) / last);
-        let frame = |i: u32| {
-            Ok(match &self.pace {
-                Pace::Clock(range) => {
-                    let clock = spread(*range, i);
-                    let view = match &self.path {
-                        Some(path) => path.view(&scene.view, clock),
-                        None => scene.view.at_clock(clock)?,
-                    };
-                    view.camera(&scene.bodies)?
+        let spread = |[from, to]: [f64; 2]| from + (to - from) * (f64::from(i) / last);
+        Ok(match &self.pace {
+            Pace::Clock(range) => {
+                let clock = spread(*range);
+                let mut view = match &self.path {
+                    Some(path) => path.view(&scene.view, clock),
+                    None => scene.view.at_clock(clock)?,
+                };
+                if factor != 1.0 {
+                    slow_down(&mut view.celerity, &mut view.event, factor);
                 }
-                Pace::Apparent { body, range } => {
-                    let view = View { nearest: Some(body.clone()), ..scene.view.clone() };
-                    view.camera_passed(&scene.bodies, spread(*range, i))?
-                }
-            })
-        };
-        (0..self.frames).map(frame).collect()
+                view.camera(&slow.bodies)?
+            }
+            Pace::Apparent { body, range } => {
+                let view = View { nearest: Some(body.clone()), ..slow.view.clone() };
+                view.camera_passed(&slow.bodies, spread(*range))?
+            }
+        })
     }
 }
 
@@ -124,32 +142,90 @@ impl Scene {
         View { nearest: None, ..self.view.clone() }.camera(&self.bodies)
     }
 
-    /// The same scene in slow motion, as it was thought to look before 1905: every velocity smaller by the same
-    /// factor, so that the fastest is [`STANDARD_BETA`].
-    pub fn standard(&self) -> Self {
+    /// The same scene in slow motion, as it was thought to look before 1905: all velocities smaller by the same
+    /// factor, so that the fastest is [`STANDARD_BETA`], and all times longer by it. That factor, too.
+    pub fn standard(&self) -> (Self, f64) {
         let mut slow = self.clone();
-        let celerities = slow.bodies.iter_mut().map(|b| &mut b.motion.celerity);
-        let mut celerities: Vec<_> = celerities.chain([&mut slow.view.celerity]).collect();
-        let fastest = celerities.iter().map(|c| c.beta().length()).fold(0.0, f64::max);
-        if fastest > 0.0 {
-            for celerity in &mut celerities {
-                **celerity = Celerity::from_beta(celerity.beta() * (STANDARD_BETA / fastest))
-                    .unwrap_or(Celerity::at_rest());
-            }
+        let celerities = slow.bodies.iter().map(|b| &b.motion.celerity).chain([&slow.view.celerity]);
+        let fastest = celerities.map(|c| c.beta().length()).fold(0.0, f64::max);
+        if fastest == 0.0 {
+            return (slow, 1.0);
         }
-        slow
+        let factor = STANDARD_BETA / fastest;
+        for body in &mut slow.bodies {
+            slow_down(&mut body.motion.celerity, &mut body.motion.origin, factor);
+        }
+        slow_down(&mut slow.view.celerity, &mut slow.view.event, factor);
+        (slow, factor)
+    }
+}
+
+fn slow_down(celerity: &mut Celerity, event: &mut Event<World>, factor: f64) {
+    *celerity = Celerity::from_beta(celerity.beta() * factor).unwrap_or(Celerity::at_rest());
+    *event = Event::at(event.t() / factor, event.position());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Speed, builtin_scene};
+    use glam::DVec3;
+
+    fn scene(name: &str) -> Scene {
+        builtin_scene(name).unwrap().scene()
     }
 
-    /// The camera of the [standard](Self::standard) film of this scene that sees the followed body where
-    /// `camera` sees it.
-    ///
-    /// # Errors
-    /// If the view is none.
-    pub fn standard_camera(&self, standard: &Self, camera: &Camera) -> Result<Camera, ViewError> {
-        let Some(body) = self.followed() else { return standard.still_camera() };
-        let map = ApparentMap::new(&body.motion, &camera.observer);
-        let passed = map.see(body.centre()).position.dot(map.axis_observer());
-        let view = View { nearest: Some(body.name.clone()), ..standard.view.clone() };
-        view.camera_passed(&standard.bodies, passed)
+    fn seen(scene: &Scene, camera: &Camera) -> DVec3 {
+        ApparentMap::new(&scene.bodies[0].motion, &camera.observer).see(scene.bodies[0].centre()).position
+    }
+
+    #[test]
+    fn frames_at_all_speeds_see_the_body_at_the_same_places() {
+        let mut cube = scene("cube");
+        let animation = Animation { frames: 5, ..cube.animation.clone().unwrap() };
+        let Pace::Apparent { range, .. } = animation.pace.clone() else { panic!() };
+        for speed in [1e-6, 0.5, 7.0] {
+            cube.set_speed(Speed::Along(speed)).unwrap();
+            let (slow, standard) = animation.standard(&cube).unwrap();
+            for (i, (camera, standard)) in animation.cameras(&cube).unwrap().iter().zip(&standard).enumerate()
+            {
+                let x = range[0] + (range[1] - range[0]) * i as f64 / 4.0;
+                // Times of slow motion are 1e6 times as long, and have as many digits less.
+                assert!((seen(&cube, camera) - DVec3::new(x, 0.0, 3.0)).length() < 1e-7, "{speed} {i}");
+                assert!((seen(&slow, standard) - DVec3::new(x, 0.0, 3.0)).length() < 1e-7, "{speed} {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn by_the_clock_the_standard_is_at_the_same_places() {
+        let gate = scene("gate");
+        let animation = Animation { frames: 4, fps: 30.0, pace: Pace::Clock([-2.0, 1.0]), path: None };
+        let cameras = animation.cameras(&gate).unwrap();
+        let (_, standard) = animation.standard(&gate).unwrap();
+        for (i, (camera, standard)) in cameras.iter().zip(&standard).enumerate() {
+            let place = camera.observer.event().position();
+            let u = gate.view.celerity.vector().x;
+            assert!((place - DVec3::new(3.0 + u * (i as f64 - 2.0), 0.0, 4.0)).length() < 1e-9);
+            assert!((standard.observer.event().position() - place).length() < 1e-6);
+            assert!(standard.observer.celerity().beta().length() <= STANDARD_BETA);
+        }
+    }
+
+    #[test]
+    fn a_scene_without_a_film_of_its_own_has_one() {
+        let mut cube = scene("cube");
+        cube.animation = None;
+        let usual = Animation::usual(&cube).unwrap();
+        let cameras = usual.cameras(&cube).unwrap();
+        // It comes in at one side and goes out at the other.
+        for camera in [&cameras[0], &cameras[119]] {
+            let pixel = camera.lens.pixel(seen(&cube, camera)).unwrap();
+            assert!(pixel.x < 0.0 || pixel.x > 1280.0, "{pixel}");
+        }
+        cube.bodies[0].motion.celerity = Celerity::at_rest();
+        assert_eq!(Animation::usual(&cube), Err(AnimationError::Still));
+        let none = Animation { frames: 0, ..usual };
+        assert_eq!(none.cameras(&cube).unwrap_err(), AnimationError::Frames(0));
     }
 }
