@@ -15,13 +15,14 @@ pub fn judge(bytes: &[u8], as_binary: bool) {
     super::judge(bytes.len() + buffer().len(), || import(&path));
 }
 
-/// As for the simple file, then normals, texture coordinates, and a matrix.
+/// As for the simple file, then normals, texture coordinates, a matrix, and times.
 fn buffer() -> Vec<u8> {
     let mut out = binary();
     out.resize(56, 0);
     out.extend([0f32, 0., 1., 0., 0., 1., 0., 0., 1.].iter().flat_map(|f| f.to_le_bytes()));
     out.extend([0f32, 0., 1., 0., 0., 1.].iter().flat_map(|f| f.to_le_bytes()));
     out.extend([0f32; 16].iter().flat_map(|f| f.to_le_bytes()));
+    out.extend([0f32, 0.5, 1.].iter().flat_map(|f| f.to_le_bytes()));
     out
 }
 
@@ -55,7 +56,7 @@ fn whole(uri: Option<&str>) -> Value {
         "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}],
         "skins": [{"joints": [1], "inverseBindMatrices": 6}],
         "animations": [{"channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}],
-            "samplers": [{"input": 4, "output": 3, "interpolation": "LINEAR"}]}],
+            "samplers": [{"input": 7, "output": 3, "interpolation": "LINEAR"}]}],
         "accessors": [
             {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
             {"bufferView": 1, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC4"},
@@ -64,7 +65,8 @@ fn whole(uri: Option<&str>) -> Value {
             {"bufferView": 4, "componentType": 5126, "count": 3, "type": "VEC2"},
             {"componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1],
                 "sparse": {"count": 3, "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 0}}},
-            {"bufferView": 5, "componentType": 5126, "count": 1, "type": "MAT4"}
+            {"bufferView": 5, "componentType": 5126, "count": 1, "type": "MAT4"},
+            {"bufferView": 6, "componentType": 5126, "count": 3, "type": "SCALAR", "min": [0], "max": [1]}
         ],
         "bufferViews": [
             {"buffer": 0, "byteLength": 36, "target": 34962},
@@ -72,7 +74,8 @@ fn whole(uri: Option<&str>) -> Value {
             {"buffer": 0, "byteOffset": 48, "byteLength": 6},
             {"buffer": 0, "byteOffset": 56, "byteLength": 36},
             {"buffer": 0, "byteOffset": 92, "byteLength": 24},
-            {"buffer": 0, "byteOffset": 116, "byteLength": 64}
+            {"buffer": 0, "byteOffset": 116, "byteLength": 64},
+            {"buffer": 0, "byteOffset": 180, "byteLength": 12}
         ],
         "buffers": [{"byteLength": buffer().len()}]
     });
@@ -400,4 +403,47 @@ fn however_often() {
     let mut json = whole(Some("a.gltf"));
     json["buffers"] = vec![json!({"byteLength": 1, "uri": "a.gltf"}); 2000].into();
     judge(&json.to_string().into_bytes(), false);
+}
+
+/// Every value of the file in turn, replaced by everything it might wrongly be, or taken out.
+#[test]
+fn one_thing_wrong() {
+    let wrong = [
+        json!(null),
+        json!(0),
+        json!(-1),
+        json!(1_000_000_000),
+        json!(4_294_967_296u64),
+        json!(0.5),
+        json!(1e308),
+        json!(""),
+        json!("x"),
+        json!("NaN"),
+        json!([]),
+        json!({}),
+        json!(true),
+    ];
+    for as_binary in [false, true] {
+        let good = whole((!as_binary).then_some("a.bin"));
+        for place in places(&good, |_| true) {
+            let judge = |json: &Value| {
+                let json = json.to_string().into_bytes();
+                let bytes = if as_binary { glb(&[(*b"JSON", json), (*b"BIN\0", buffer())]) } else { json };
+                judge(&bytes, as_binary);
+            };
+            for other in &wrong {
+                let mut json = good.clone();
+                *json.pointer_mut(&place).unwrap() = other.clone();
+                judge(&json);
+            }
+            let Some((parent, key)) = place.rsplit_once('/') else { continue };
+            let mut json = good.clone();
+            match json.pointer_mut(parent).unwrap() {
+                Value::Object(items) => drop(items.remove(key)),
+                Value::Array(items) => drop(items.remove(key.parse::<usize>().unwrap())),
+                _ => unreachable!("only these hold others"),
+            }
+            judge(&json);
+        }
+    }
 }

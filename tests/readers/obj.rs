@@ -186,6 +186,9 @@ fn however_long() {
         "\n".repeat(100_000),
         "\\\n".repeat(100_000),
         format!("{start}f{}\n", " 1 2 3".repeat(50_000)),
+        format!("{start}f{}\n", " 1 2 3 1 3 2".repeat(20_000)),
+        // Many, each just small enough to be cut with care.
+        format!("{start}{}", format!("f{}\n", " 1 2 3".repeat(99)).repeat(10)),
         format!("{start}{}", "f 1 2 3\n".repeat(50_000)),
         format!("{start}{}", "g\nf 1 2 3\n".repeat(20_000)),
         format!("{start}{}", "usemtl a\nf 1 2 3\n".repeat(20_000)),

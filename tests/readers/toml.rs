@@ -143,7 +143,7 @@ fn with_values(text: &str, changes: &[(Index, Option<String>, bool)]) -> String 
 }
 
 proptest! {
-    #![proptest_config(cases(500))]
+    #![proptest_config(cases(300))]
 
     #[test]
     fn other_tokens(scene in select(shipped()), changes in changes(&NASTY)) {

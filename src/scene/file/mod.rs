@@ -14,6 +14,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use source::{Source, VelocityKeys, explain, velocity_keys};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 use tables::{BodyTable, CameraTable, Color, MaterialTable, Scale, SceneFile, Vector};
 use terrell_geodesic::TetradError;
 use toml::Spanned;
@@ -157,6 +158,7 @@ fn read_body(
         let parts = read_mesh(source, &table.mesh, notes)?;
         meshes.insert(mesh_name.clone(), parts);
     }
+    // The meshes themselves are shared with other bodies as long as they stay as they are.
     let mut parts = meshes[mesh_name].clone();
     if let Some(word) = &table.material {
         let name = word.get_ref();
@@ -165,7 +167,7 @@ fn read_body(
             source.at(word, format!("there is no [material.{name}]; {}", did_you_mean(name, known)))
         })?;
         let color = read_color(source, &material.color)?;
-        parts.iter_mut().for_each(|part| part.mesh.repaint(color));
+        parts.iter_mut().for_each(|part| Arc::make_mut(&mut part.mesh).repaint(color));
     }
     let scale = match &table.scale {
         None => DVec3::ONE,

@@ -27,7 +27,7 @@ pub struct Part {
     /// What the file calls it.
     pub name: String,
     /// At rest; where it is animated, before its [`Clip`] poses it.
-    pub mesh: Mesh,
+    pub mesh: Arc<Mesh>,
     /// How it moves.
     pub motion: Motion,
     /// How it is animated, slowly, within its rest frame.
@@ -37,33 +37,31 @@ pub struct Part {
 impl Part {
     /// What neither moves nor is animated.
     pub(super) fn still(name: String, mesh: Mesh) -> Self {
-        Self { name, mesh, motion: Motion::at_rest(DVec3::ZERO), clip: None }
+        Self { name, mesh: Arc::new(mesh), motion: Motion::at_rest(DVec3::ZERO), clip: None }
     }
 
     /// Moves and turns it within its rest frame.
     pub(super) fn place(&mut self, place: DAffine3) {
         match self.clip.take() {
             Some(clip) => self.clip = Some(clip.placed(place)),
-            None => self.mesh = std::mem::take(&mut self.mesh).placed(&place),
+            None => {
+                let mesh = Arc::unwrap_or_clone(std::mem::take(&mut self.mesh));
+                self.mesh = Arc::new(mesh.placed(&place));
+            }
         }
     }
 
     /// Least and greatest coordinates in the rest frame; of what is animated, as at its beginning.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         match &self.clip {
-            Some(clip) => self.mesh.clone().placed(&clip.pose(0.0)).bounds(),
+            Some(clip) => Mesh::clone(&self.mesh).placed(&clip.pose(0.0)).bounds(),
             None => self.mesh.bounds(),
         }
     }
 
     /// As a body of a scene.
     pub fn into_body(self) -> Body {
-        Body {
-            name: self.name,
-            mesh: Arc::new(self.mesh),
-            motion: self.motion,
-            clip: self.clip.map(Arc::new),
-        }
+        Body { name: self.name, mesh: self.mesh, motion: self.motion, clip: self.clip.map(Arc::new) }
     }
 }
 
@@ -77,6 +75,7 @@ impl Imported {
     pub fn into_mesh(self) -> Mesh {
         let mut all = Mesh::default();
         for Part { mesh, clip, .. } in self.settled().parts {
+            let mesh = Arc::unwrap_or_clone(mesh);
             all.append(match clip {
                 Some(clip) => mesh.placed(&clip.pose(0.0)),
                 None => mesh,

@@ -191,7 +191,19 @@ fn concave(polygon: &[u32], mesh: &Mesh) -> Option<Vec<DVec2>> {
         .map(|i| (corner(i + 1) - corner(i)).angle_to(corner(i + 2) - corner(i + 1)))
         .filter(|angle| angle.is_finite())
         .sum();
-    ((0..flat.len()).any(turns) || around > 7.0).then_some(flat)
+    let is_concave = (0..flat.len()).any(turns) || around > 7.0;
+    (is_concave && !(flat.len() > MOST_TANGLED && is_tangled(&flat, around))).then_some(flat)
+}
+
+/// Corners of a polygon that crosses itself, beyond which it becomes a fan: cutting the ears off such a one takes
+/// a time that grows as their cube.
+const MOST_TANGLED: usize = 300;
+
+/// Whether an outline surely is no plain one: it does not go round just once, or comes back again and again to
+/// where it was (a hole that is joined to it makes it come back to two corners).
+fn is_tangled(outline: &[DVec2], around: f64) -> bool {
+    let places: HashSet<_> = outline.iter().map(|p| p.to_array().map(f64::to_bits)).collect();
+    (around - std::f64::consts::TAU).abs() > 0.1 || places.len() < outline.len() / 10 * 9
 }
 
 /// The materials of an OBJ file, and the pictures they name.

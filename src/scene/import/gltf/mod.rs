@@ -41,7 +41,7 @@ const KNOWN_EXTENSIONS: [&str; 4] = [
     "KHR_texture_transform",
 ];
 
-/// Parses and validates; the validator underneath trusts one index, so that is looked at first.
+/// Parses and validates; what the validator underneath trusts is looked at first.
 fn open(bytes: &[u8]) -> Result<gltf::Gltf, String> {
     let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|e| e.to_string())?;
     let json = unchecked.document.into_json();
@@ -49,6 +49,21 @@ fn open(bytes: &[u8]) -> Result<gltf::Gltf, String> {
     for accessor in primitives.flat_map(|primitive| primitive.attributes.values()) {
         if accessor.value() >= json.accessors.len() {
             return Err(format!("there is no accessor {}", accessor.value()));
+        }
+    }
+    for (index, image) in json.images.iter().enumerate() {
+        let whole = if image.buffer_view.is_some() { image.mime_type.is_some() } else { image.uri.is_some() };
+        if !whole {
+            return Err(format!("image {index} needs a URI, or a view and a type"));
+        }
+    }
+    for (index, animation) in json.animations.iter().enumerate() {
+        for target in animation.channels.iter().map(|channel| &channel.target) {
+            if target.node.value() >= json.nodes.len()
+                || target.path == gltf::json::validation::Checked::Invalid
+            {
+                return Err(format!("animation {index} moves a node or a property of it that there is not"));
+            }
         }
     }
     let document = gltf::Document::from_json(json).map_err(|e| e.to_string())?;

@@ -8,6 +8,7 @@ use crate::scene::{Aim, Clip, Joint, Mesh, Paint, Projection, View};
 use glam::{DAffine3, DVec3};
 use gltf::mesh::Mode;
 use std::path::Path;
+use std::sync::Arc;
 use terrell_geodesic::{Celerity, Event, FourVector, World};
 
 /// A file on its way to parts.
@@ -180,11 +181,11 @@ impl Reader {
                     let clip = (!place.joints.is_empty()).then(|| Clip::new(place.joints.clone()));
                     let name = self.unused(&place.name);
                     let (motion, mesh) = (place.motion, Mesh::default());
-                    self.parts.push(Part { name, mesh, motion, clip });
+                    self.parts.push(Part { name, mesh: Arc::new(mesh), motion, clip });
                     *place.part.insert(self.parts.len() - 1)
                 }
             };
-            let whole = &mut self.parts[part].mesh;
+            let whole = Arc::make_mut(&mut self.parts[part].mesh);
             if whole.vertex_count() + read.vertex_count() > u32::MAX as usize {
                 return Err("it has more than 4 294 967 295 vertices".into());
             }
@@ -304,15 +305,16 @@ impl Reader {
         for part in &mut self.parts {
             // Of all materials those it uses, in their order.
             let mut new = vec![None; self.surfaces.materials.len()];
-            for index in &mut part.mesh.material {
+            let mesh = Arc::make_mut(&mut part.mesh);
+            for index in &mut mesh.material {
                 let old = *index as usize;
                 *index = *new[old].get_or_insert_with(|| {
-                    part.mesh.materials.push(self.surfaces.materials[old].clone());
-                    part.mesh.materials.len() as u32 - 1
+                    mesh.materials.push(self.surfaces.materials[old].clone());
+                    mesh.materials.len() as u32 - 1
                 });
             }
             if !self.colored {
-                part.mesh.paint_as_clay();
+                mesh.paint_as_clay();
             }
         }
         if !self.colored {
