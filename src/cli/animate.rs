@@ -142,8 +142,8 @@ impl Animate {
             notes: Vec::new(),
         };
         match target {
-            Target::Movie(format) => shooting.to_movie(&output, format, fps)?,
-            Target::Folder => shooting.to_folder(&output)?,
+            Target::Movie(format) => shooting.shoot_movie(&output, format, fps)?,
+            Target::Folder => shooting.shoot_folder(&output)?,
         }
         shooting.bar.finish_and_clear();
         let Shooting { tally, stop, notes, .. } = shooting;
@@ -293,7 +293,7 @@ struct Shooting<'a> {
 }
 
 impl Shooting<'_> {
-    fn to_movie(&mut self, output: &Path, format: MovieFormat, fps: f64) -> Result<(), Fault> {
+    fn shoot_movie(&mut self, output: &Path, format: MovieFormat, fps: f64) -> Result<(), Fault> {
         // What a container refuses is the user's mistake; what happens while it is written may be the system's.
         Movie::new(format, std::io::Cursor::new(Vec::new()), self.size[0], self.size[1], fps)?;
         let [width, height] = self.size;
@@ -320,7 +320,7 @@ impl Shooting<'_> {
         Ok(written?.finish()?)
     }
 
-    fn to_folder(&mut self, output: &Path) -> Result<(), Fault> {
+    fn shoot_folder(&mut self, output: &Path) -> Result<(), Fault> {
         let mut folder = FrameFolder::open(output)?;
         let count = self.takes.iter().map(|t| t.animation.frames as usize).sum();
         self.tally.surplus = folder.shorten(count)?;

@@ -3,7 +3,7 @@ use super::{ImportError, Imported, Part, ReadFile, beside, note_once, without_te
 use crate::scene::{Material, Mesh, Paint, Picture, Texture, Wrap};
 use glam::{DAffine2, DVec2, DVec3};
 use std::cell::RefCell;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -95,8 +95,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
             normals: if source.normals.len() / 3 == count { triples(&source.normals) } else { Vec::new() },
             ..Mesh::default()
         };
-        part.triangles =
-            triangulated(&source.indices, &source.face_arities, &part).map_err(|e| fault(None, e))?;
+        part.triangles = triangulated(&source.indices, &source.face_arities, &part);
         let mut index = material.unwrap_or(plain);
         if painted {
             // Vertex colours stand for the material's own.
@@ -126,7 +125,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
 
 /// Polygons as triangles: convex ones as fans, others by cutting ears off, so that what they leave open stays
 /// open. Points and lines (one corner, two) are no surface.
-fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> Result<Vec<[u32; 3]>, String> {
+fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> Vec<[u32; 3]> {
     let mut out = Vec::new();
     let mut rest = indices;
     let all_triangles = corners.is_empty().then(|| std::iter::repeat_n(3, indices.len() / 3));
@@ -139,11 +138,6 @@ fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> Result<Vec<[u3
         rest = others;
         match *polygon {
             [a, b, c] => out.push([a, b, c]),
-            [..] if is_tangle(polygon, mesh) => {
-                return Err(format!(
-                    "a polygon of {count} corners comes back to the same few points again and again"
-                ));
-            }
             [a, _, _, ..] => match concave(polygon, mesh) {
                 None => out.extend(polygon[1..].windows(2).map(|w| [a, w[0], w[1]])),
                 Some(flat) => {
@@ -160,14 +154,7 @@ fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> Result<Vec<[u3
             _ => {}
         }
     }
-    Ok(out)
-}
-
-/// Whether so many corners are at so few points that cutting ears off would take for ever.
-fn is_tangle(polygon: &[u32], mesh: &Mesh) -> bool {
-    const FEW: usize = 100;
-    let point = |v: &u32| mesh.vertex(*v).to_array().map(f64::to_bits);
-    polygon.len() > FEW && 2 * polygon.iter().map(point).collect::<HashSet<_>>().len() < polygon.len()
+    out
 }
 
 /// A polygon's corners in its own plane, counter-clockwise, if it turns both ways there.
