@@ -1,4 +1,5 @@
 use super::arc::MOST_CUTS;
+use super::side::Side;
 use super::{ApparentMesh, ApparentTriangle, Arc, Field, Rod};
 use crate::relativity::{ApparentMap, Points, PointsMut};
 use crate::scene::Mesh;
@@ -132,7 +133,7 @@ impl ApparentMesh {
 }
 
 /// Apparent positions and Doppler factors of the mesh's own vertices.
-fn see_vertices(mesh: &Mesh, map: &ApparentMap) -> (Vec<DVec3>, Vec<f64>) {
+pub(super) fn see_vertices(mesh: &Mesh, map: &ApparentMap) -> (Vec<DVec3>, Vec<f64>) {
     const BLOCK: usize = 512;
     let n = mesh.vertex_count();
     let (mut vertices, mut doppler) = (vec![DVec3::ZERO; n], vec![0.0; n]);
@@ -178,36 +179,6 @@ struct Corner {
     rest: DVec3,
     /// Barycentric coordinates of the second and third corner of the mesh's triangle.
     weights: [f64; 2],
-}
-
-/// The nodes of one side, kept in [`Cutter::sides`]; both its ends included.
-#[derive(Clone, Copy)]
-struct Side {
-    start: usize,
-    pieces: usize,
-    reversed: bool,
-    /// How much of the tolerance a piece uses up; what the pieces were before they were rounded up.
-    fill: f64,
-}
-
-impl Side {
-    fn node(self, k: usize) -> usize {
-        self.start + if self.reversed { self.pieces - k } else { k }
-    }
-
-    fn part(self, from: usize, to: usize) -> Self {
-        let start = self.node(from).min(self.node(to));
-        Self { start, pieces: to - from, ..self }
-    }
-
-    /// Length, measured in tolerances.
-    fn extent(self) -> f64 {
-        self.fill * self.pieces as f64
-    }
-
-    fn turned(self) -> Self {
-        Self { reversed: !self.reversed, ..self }
-    }
 }
 
 struct Cutter<'a> {
@@ -367,10 +338,7 @@ impl Cutter<'_> {
     /// Halves the longest side still to be cut, joins the cut to the opposite corner, and goes on with the two
     /// halves.
     fn split(&mut self, face: u32, corners: [Corner; 3], sides: [Side; 3], depth: Depth) -> Option<()> {
-        let most = (0..3)
-            .filter(|&i| sides[i].pieces > 1)
-            .max_by(|&i, &j| sides[i].extent().total_cmp(&sides[j].extent()));
-        let Some(most) = most.filter(|_| depth.halvings < Depth::MOST.halvings) else {
+        let Some(most) = Side::longest(&sides).filter(|_| depth.halvings < Depth::MOST.halvings) else {
             return self.leaf(face, corners, depth);
         };
         let pieces = sides[most].pieces;
