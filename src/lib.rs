@@ -41,16 +41,19 @@
 //! # Reading order
 //!
 //! [`geodesic`] (events, Lorentz maps, observers) → [`relativity`] (the map) → [`scene`] (what is there) →
-//! [`apparent`] (what it looks like) → [`raster`] → [`film`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in turn.
+//! [`apparent`] (what it looks like) → [`raster`] → [`film`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in
+//! turn. [`mod@transform`] instead makes a [`export::Model`] for other programs of what there is and how it looks.
 
 pub mod apparent;
 pub mod color;
 pub mod drawing;
+pub mod export;
 pub mod film;
 pub mod picture;
 pub mod raster;
 pub mod relativity;
 pub mod render;
 pub mod scene;
+pub mod transform;
 
 pub use terrell_geodesic as geodesic;

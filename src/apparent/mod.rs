@@ -17,4 +17,4 @@ pub use cutting::{Cutting, CuttingError, Inserted, Moment};
 pub use field::Field;
 pub use mesh::{ApparentMesh, ApparentTriangle};
 pub use rod::{Piece, Rod};
-pub use subdivision::{Subdivision, TooManyPieces, WHOLE};
+pub use subdivision::{Subdivision, TooManyPieces, WHOLE, see_vertices};

@@ -132,8 +132,8 @@ impl ApparentMesh {
     }
 }
 
-/// Apparent positions and Doppler factors of the mesh's own vertices.
-pub(super) fn see_vertices(mesh: &Mesh, map: &ApparentMap) -> (Vec<DVec3>, Vec<f64>) {
+/// Apparent positions (relative to the observer, in its axes) and Doppler factors of a mesh's own vertices.
+pub fn see_vertices(mesh: &Mesh, map: &ApparentMap) -> (Vec<DVec3>, Vec<f64>) {
     const BLOCK: usize = 512;
     let n = mesh.vertex_count();
     let (mut vertices, mut doppler) = (vec![DVec3::ZERO; n], vec![0.0; n]);

@@ -49,7 +49,7 @@ enum CameraFlag {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum ColorFlag {
+pub(super) enum ColorFlag {
     /// The meshes' own colours, without shift and beaming
     Geometry,
     /// The Doppler factor in false colour: white 1, blue above, red below

@@ -8,6 +8,7 @@ mod render;
 mod scenes;
 mod source;
 mod summary;
+mod transform;
 mod values;
 mod velocity;
 
@@ -27,12 +28,14 @@ const EXAMPLES: &str = "Examples:
   terrell render statue.glb --beta 0.9             your own mesh, passing by at 0.9c
   terrell animate gate -o gate.mp4                 flying through a gate
   terrell render gate --color doppler -o gate.exr  float channels, Doppler factor included
+  terrell transform statue.glb --beta 0.9          its apparent shape, for other programs
   terrell locate --beta 0.9,0,0 1,2,3              where one point is seen";
 
 #[derive(Subcommand)]
 enum Command {
     Render(render::Render),
     Animate(animate::Animate),
+    Transform(transform::Transform),
     Locate(locate::Locate),
     Scenes(scenes::Scenes),
 }
@@ -58,6 +61,7 @@ pub(crate) fn run() -> ExitCode {
     let done = match cli.command {
         Command::Render(render) => render.run(),
         Command::Animate(animate) => animate.run(),
+        Command::Transform(transform) => transform.run(),
         Command::Locate(locate) => locate.run(),
         Command::Scenes(scenes) => scenes.run(),
     };

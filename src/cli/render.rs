@@ -123,7 +123,7 @@ impl Render {
 }
 
 /// Whether neither bodies nor camera move.
-fn is_still(scene: &Scene) -> bool {
+pub(super) fn is_still(scene: &Scene) -> bool {
     let moves = |c: &terrell::geodesic::Celerity| c.direction().is_some();
     !moves(&scene.view.celerity) && !scene.bodies.iter().any(|b| moves(&b.motion.celerity))
 }

@@ -173,6 +173,24 @@ impl ApparentMap {
         })
     }
 
+    /// The unit normal of the apparent surface, observer's axes, where the surface has the normal `normal_rest`
+    /// in the rest frame at the point `x_rest`.
+    ///
+    /// The map's derivative, inverted and transposed, takes n′ to D n′⊥ + (n′·û)(û + γβ e⊥), up to a factor: û the
+    /// unit vector of the motion, ⊥ what is across it, e the unit vector from the observer to the point.
+    pub fn seen_normal(&self, x_rest: DVec3, normal_rest: DVec3) -> DVec3 {
+        let sight = self.see(x_rest);
+        if self.speed == 0.0 || sight.rest_distance == 0.0 {
+            return self.rotate(normal_rest).normalize_or_zero();
+        }
+        let axis = self.axis_rest();
+        let across = |v: DVec3| v - v.dot(axis) * axis;
+        let e = self.offset_rest(x_rest) / sight.rest_distance;
+        let along = normal_rest.dot(axis);
+        let normal = sight.doppler * across(normal_rest) + along * (axis + self.speed * across(e));
+        self.rotate(normal).normalize_or_zero()
+    }
+
     /// Where a rest-frame point stored in f32 is seen, worked out in f32 throughout: position (observer's
     /// axes), distance, Doppler factor.
     pub fn see_f32(&self, x_rest: [f32; 3]) -> ([f32; 3], f32, f32) {

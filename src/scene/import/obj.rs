@@ -3,7 +3,7 @@ use super::{ImportError, Imported, Part, ReadFile, beside, note_once, without_te
 use crate::scene::{Material, Mesh, Paint, Picture, Texture, Wrap};
 use glam::{DAffine2, DVec2, DVec3};
 use std::cell::RefCell;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
