@@ -195,7 +195,8 @@ fn object(
     let mut groups: Vec<Group> = Vec::new();
     groups.resize_with(if own_colors { mesh.materials.len().max(1) } else { 1 }, Group::default);
     for (triangle, &face) in cutting.triangles.iter().zip(&cutting.face) {
-        let material = if own_colors { mesh.material.get(face as usize).map_or(0, |m| *m as usize) } else { 0 };
+        let material =
+            if own_colors { mesh.material.get(face as usize).map_or(0, |m| *m as usize) } else { 0 };
         let direction = if mesh.normals.is_empty() {
             // Faces of one plane differ by rounding.
             face_normals[face as usize].map(|v| (v * 1e5).round() as i32)
@@ -245,9 +246,7 @@ fn object(
                     group.corners.iter().map(light).collect()
                 }
                 Paint::Uniform(_) => Vec::new(),
-                Paint::Vertices(colors) => {
-                    group.corners.iter().map(|(v, _)| colors[*v as usize]).collect()
-                }
+                Paint::Vertices(colors) => group.corners.iter().map(|(v, _)| colors[*v as usize]).collect(),
                 // The pieces have their faces' colours; these are asked here.
                 Paint::Faces(_) => group.corners.iter().map(|(_, f)| face_color(mesh, *f)).collect(),
             };

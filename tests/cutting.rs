@@ -13,7 +13,8 @@ use terrell::scene::{Mesh, Paint, builtin_mesh, shapes};
 fn map(celerity: DVec3, eye: DVec3) -> ApparentMap {
     let motion = Motion { celerity: Celerity::new(celerity).unwrap(), origin: Event::origin() };
     // The observer's event for which its rest-frame place is `eye`, at rest-frame time 0.
-    let event = Event::origin() + motion.world_from_rest() * terrell::geodesic::FourVector::from_parts(0.0, eye);
+    let event =
+        Event::origin() + motion.world_from_rest() * terrell::geodesic::FourVector::from_parts(0.0, eye);
     let observer = Tetrad::new(event, Celerity::at_rest(), DVec3::Y, DVec3::Z).unwrap();
     ApparentMap::new(&motion, &observer)
 }
@@ -70,7 +71,8 @@ fn no_point_is_off_by_more_than_asked() {
 #[test]
 fn one_cutting_serves_all_moments() {
     let mesh = builtin_mesh("cube").unwrap();
-    let maps: Vec<_> = (0..7).map(|i| map(DVec3::X * 3.0, DVec3::new(f64::from(i) - 3.0, -1.5, 0.2))).collect();
+    let maps: Vec<_> =
+        (0..7).map(|i| map(DVec3::X * 3.0, DVec3::new(f64::from(i) - 3.0, -1.5, 0.2))).collect();
     let moments: Vec<_> = maps.iter().map(|map| Moment { mesh: &mesh, map }).collect();
     let all = Cutting::new(&moments, 0.01, MOST).unwrap();
     for moment in &moments {
@@ -115,7 +117,11 @@ fn there_are_no_cracks() {
                     }
                 }
             }
-            assert!(edges.values().all(|sum| *sum == 0), "{} open", edges.values().filter(|s| **s != 0).count());
+            assert!(
+                edges.values().all(|sum| *sum == 0),
+                "{} open",
+                edges.values().filter(|s| **s != 0).count()
+            );
         }
     }
 }

@@ -161,9 +161,7 @@ impl Cutting {
             triangles: self.triangles.clone(),
             paint: match &mesh.paint {
                 Paint::Uniform(color) => Paint::Uniform(*color),
-                Paint::Faces(colors) => {
-                    Paint::Faces(self.face.iter().map(|f| colors[*f as usize]).collect())
-                }
+                Paint::Faces(colors) => Paint::Faces(self.face.iter().map(|f| colors[*f as usize]).collect()),
                 Paint::Vertices(colors) => Paint::Vertices(grow(colors, &self.inserted)),
             },
             materials: mesh.materials.clone(),
@@ -204,10 +202,8 @@ impl Edges {
             .collect();
         ends.par_sort_unstable();
         ends.dedup();
-        let reversed: Vec<bool> = ends
-            .iter()
-            .map(|&[a, b]| mesh.vertex(a).to_array() > mesh.vertex(b).to_array())
-            .collect();
+        let reversed: Vec<bool> =
+            ends.iter().map(|&[a, b]| mesh.vertex(a).to_array() > mesh.vertex(b).to_array()).collect();
         let cuts: Vec<Cuts> = ends
             .par_iter()
             .zip(&reversed)
@@ -329,9 +325,12 @@ impl Cutter<'_> {
     fn inner_side(&mut self, a: Corner, b: Corner) -> Option<Side> {
         let mut lines = std::mem::take(&mut self.lines);
         lines.clear();
-        lines.extend(self.moments.iter().enumerate().map(|(m, moment)| {
-            Line::new(moment.map.speed(), self.offset(m, a), self.offset(m, b))
-        }));
+        lines.extend(
+            self.moments
+                .iter()
+                .enumerate()
+                .map(|(m, moment)| Line::new(moment.map.speed(), self.offset(m, a), self.offset(m, b))),
+        );
         let cuts = cuts(&lines, OF_SIDES * self.tolerance);
         self.lines = lines;
         let cuts = cuts?;

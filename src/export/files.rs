@@ -68,7 +68,10 @@ impl Pictures {
 
     /// The names of these files.
     pub fn names(&self, path: &Path) -> Vec<String> {
-        self.iter().enumerate().map(|(i, p)| picture_name(path, i, p.file.as_deref().unwrap_or(PNG))).collect()
+        self.iter()
+            .enumerate()
+            .map(|(i, p)| picture_name(path, i, p.file.as_deref().unwrap_or(PNG)))
+            .collect()
     }
 }
 

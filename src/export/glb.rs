@@ -229,9 +229,8 @@ impl Glb {
         let indices = surface.triangles.iter().flatten().flat_map(|v| v.to_le_bytes());
         let view = self.view(indices, Some(INDICES));
         let count = 3 * surface.triangles.len();
-        self.accessors.push(
-            json!({ "bufferView": view, "componentType": UNSIGNED, "count": count, "type": "SCALAR" }),
-        );
+        self.accessors
+            .push(json!({ "bufferView": view, "componentType": UNSIGNED, "count": count, "type": "SCALAR" }));
         let indices = self.accessors.len() - 1;
         let material = self.material(&surface.material);
         let mut primitive = json!({ "attributes": attributes, "indices": indices, "material": material });
@@ -248,7 +247,8 @@ impl Glb {
         self.known.push(material.clone());
         let [r, g, b] = clipped(&[material.base_color])[0];
         // Neither metal nor gloss: the colours are the surface's own.
-        let mut base = json!({ "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0, "roughnessFactor": 1 });
+        let mut base =
+            json!({ "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0, "roughnessFactor": 1 });
         if let Some(texture) = &material.base_texture {
             base["baseColorTexture"] = self.texture(texture);
         }

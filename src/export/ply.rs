@@ -15,9 +15,8 @@ pub(super) fn encode(model: &Model, path: &Path) -> Result<Vec<u8>, ExportError>
     if model.vertex_count() > u32::MAX as usize {
         return Err(ExportError::TooLong(path.to_owned()));
     }
-    let properties: String = ["x", "y", "z", "nx", "ny", "nz", "u", "v"]
-        .map(|name| format!("property float {name}\n"))
-        .concat();
+    let properties: String =
+        ["x", "y", "z", "nx", "ny", "nz", "u", "v"].map(|name| format!("property float {name}\n")).concat();
     let mut out = format!(
         "ply\nformat binary_little_endian 1.0\ncomment terrell {}\nelement vertex {}\n{properties}property uchar red\n\
          property uchar green\nproperty uchar blue\nproperty float doppler\nelement face {}\n\

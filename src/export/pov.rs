@@ -14,7 +14,11 @@ pub(super) fn encode(model: &Model, path: &Path) -> Vec<File> {
     let mut out = format!("// terrell {}: {}\n", env!("CARGO_PKG_VERSION"), name_of(&model.name));
     if let Some(eye) = &model.eye {
         let [width, height] = eye.size;
-        let _ = writeln!(out, "// povray +I{} +W{width} +H{height} +A0.01", path.file_name().unwrap_or_default().to_string_lossy());
+        let _ = writeln!(
+            out,
+            "// povray +I{} +W{width} +H{height} +A0.01",
+            path.file_name().unwrap_or_default().to_string_lossy()
+        );
     }
     out.push_str("#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\nbackground { color rgb 0 }\n");
     if let Some(eye) = &model.eye {
