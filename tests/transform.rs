@@ -289,6 +289,7 @@ fn the_users_mistakes_are_explained() {
     let folder = folder();
     let at = folder.path();
     std::fs::write(at.join("empty.obj"), "").unwrap();
+    std::fs::write(at.join("s.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     let files = || std::fs::read_dir(at).unwrap().count();
     let before = files();
     for (arguments, part) in [
@@ -300,7 +301,9 @@ fn the_users_mistakes_are_explained() {
         (&["cube", "-o", "/proc/a.obj"], "/proc/a."),
         (&["cube", "-o", "a.glb", "--json", "no/a.json"], "no/a.json"),
         (&["cube", "-o", "a.glb", "--json", "/proc/a.json"], "/proc/a.json"),
-        (&["cube", "-o", "a.glb", "--json", "a.glb"], "both"),
+        (&["cube", "-o", "a.glb", "--json", "./a.glb"], "both"),
+        (&["cube", "-o", "a.obj", "--json", "a.mtl"], "both"),
+        (&["s.obj", "-o", "./s.obj"], "what is read"),
         (&["empty.obj"], "no triangles"),
         (&["cuba"], "'cube'"),
         (&["cube", "--tolerance", "0"], "--tolerance"),

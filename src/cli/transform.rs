@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use terrell::color::Coloring;
 use terrell::export::{self, Format};
 use terrell::geodesic::{Event, Tetrad, World};
-use terrell::picture;
+use terrell::picture::{self, Pending};
 use terrell::relativity::ApparentMap;
 use terrell::scene::{Body, Camera, Scene, View};
 use terrell::transform::{Axes, Options, Report, transform};
@@ -126,6 +126,11 @@ impl Transform {
         for path in [Some(&output), self.json.as_ref()].into_iter().flatten() {
             check_target(path)?;
         }
+        let same =
+            |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+        if same(&output, self.scene.as_ref()) {
+            return Err(format!("{} is what is read; write to another file", output.display()).into());
+        }
         let (observers, times) = self.observers(&scene, &camera)?;
         let options = Options {
             tolerance: self.tolerance,
@@ -144,22 +149,20 @@ impl Transform {
         let mut done =
             Done { scene: &scene, camera: &camera, options: &options, report, output, files: Vec::new() };
         model.extras = done.extras();
-        // Known before anything is written: the JSON names the files.
-        let json_to_stdout = self.json.as_deref() == Some(Path::new("-"));
-        let json_file = self.json.as_ref().filter(|_| !json_to_stdout);
-        if let Some(path) = json_file.filter(|path| **path == done.output) {
-            return Err(format!("{} cannot be both the mesh and the JSON", path.display()).into());
-        }
-        // What cannot be written is known before the mesh gets its name.
-        if let Some(path) = json_file {
-            picture::prepare(path, |_| Ok(()))?;
-        }
-        done.files = export::write(&model, &done.output)?;
+        let mut files = export::prepare(&model, &done.output)?;
+        done.files = files.iter().rev().map(|file| file.path().to_owned()).collect();
         let whole = start.elapsed();
-        if let Some(path) = json_file {
-            let summary = done.summary(whole);
-            picture::prepare(path, |to| writeln!(to, "{summary:#}"))?.finish()?;
+        let json_to_stdout = self.json.as_deref() == Some(Path::new("-"));
+        if let Some(path) = self.json.as_ref().filter(|_| !json_to_stdout) {
+            // All or none.
+            let json = picture::prepare(path, |to| writeln!(to, "{:#}", done.summary(whole)))?;
+            let plain = json.path().is_file() || !json.path().exists();
+            if plain && done.files.iter().any(|file| file == json.path()) {
+                return Err(format!("{} cannot be both the mesh and the JSON", path.display()).into());
+            }
+            files.push(json);
         }
+        files.into_iter().try_for_each(Pending::finish)?;
         if json_to_stdout {
             writeln!(std::io::stdout(), "{:#}", done.summary(whole))?;
         }

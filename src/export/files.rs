@@ -1,17 +1,17 @@
 use super::{ExportError, Format, Model, glb, obj, ply, pov};
-use crate::picture::{Pending, prepare};
+use crate::picture::{self, Pending};
 use crate::scene::Picture;
 use image::ImageEncoder;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Writes a model in the format of the file's ending; OBJ and POV-Ray with their pictures beside it. All of it or
-/// nothing. Gives the paths of all files.
+/// Writes a model in the format of the file's ending, to be [finished](Pending::finish); OBJ and POV-Ray with their
+/// other files beside it. The one named comes last: what it names is there by then.
 ///
 /// # Errors
 /// On an unknown ending, on what the format cannot hold, or if a file cannot be written.
-pub fn write(model: &Model, path: &Path) -> Result<Vec<PathBuf>, ExportError> {
+pub fn prepare(model: &Model, path: &Path) -> Result<Vec<Pending>, ExportError> {
     let format = Format::of(path)?;
     if format != Format::Glb && model.times.len() > 1 {
         return Err(ExportError::Still(path.to_owned()));
@@ -22,15 +22,17 @@ pub fn write(model: &Model, path: &Path) -> Result<Vec<PathBuf>, ExportError> {
         Format::Ply => vec![File { path: path.to_owned(), contents: ply::encode(model, path)? }],
         Format::Pov => pov::encode(model, path),
     };
-    let paths = files.iter().map(|file| file.path.clone()).collect();
-    // The one the user named comes last: what it names is there by then.
     files.reverse();
-    let pending: Vec<Pending> = files
-        .iter()
-        .map(|file| prepare(&file.path, |to| to.write_all(&file.contents)))
-        .collect::<Result<_, _>>()?;
-    pending.into_iter().try_for_each(Pending::finish)?;
-    Ok(paths)
+    let written = |file: &File| picture::prepare(&file.path, |to| to.write_all(&file.contents));
+    Ok(files.iter().map(written).collect::<Result<_, _>>()?)
+}
+
+/// Writes a model in the format of the file's ending, all of it or nothing.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn write(model: &Model, path: &Path) -> Result<(), ExportError> {
+    Ok(prepare(model, path)?.into_iter().try_for_each(Pending::finish)?)
 }
 
 /// A file to be.
@@ -41,44 +43,44 @@ pub(super) struct File {
 
 /// The pictures a model uses, each once.
 #[derive(Default)]
-pub(super) struct Pictures(Vec<Arc<Picture>>);
+pub(super) struct Pictures {
+    used: Vec<Arc<Picture>>,
+    /// Whether they must not be the files they came from, which may be partly transparent.
+    opaque: bool,
+}
 
 impl Pictures {
+    /// Written anew, without what other programs may take for transparency.
+    pub fn opaque() -> Self {
+        Self { opaque: true, ..Self::default() }
+    }
+
     /// Its number.
     pub fn number(&mut self, picture: &Arc<Picture>) -> usize {
-        self.0.iter().position(|p| Arc::ptr_eq(p, picture)).unwrap_or_else(|| {
-            self.0.push(picture.clone());
-            self.0.len() - 1
+        self.used.iter().position(|p| Arc::ptr_eq(p, picture)).unwrap_or_else(|| {
+            self.used.push(picture.clone());
+            self.used.len() - 1
         })
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &Picture> {
-        self.0.iter().map(|p| &**p)
+        self.used.iter().map(|p| &**p)
     }
 
     /// As files beside the model's, named after it and numbered.
     pub fn files(&self, path: &Path) -> Vec<File> {
         let file = |(number, picture): (usize, &Picture)| {
-            let contents = file_of(picture);
-            let path = path.with_file_name(picture_name(path, number, &contents));
-            File { path, contents }
+            let contents = if self.opaque { png_of(picture) } else { file_of(picture) };
+            File { path: path.with_file_name(self.name(number, path)), contents }
         };
         self.iter().enumerate().map(file).collect()
     }
 
-    /// The names of these files.
-    pub fn names(&self, path: &Path) -> Vec<String> {
-        self.iter()
-            .enumerate()
-            .map(|(i, p)| picture_name(path, i, p.file.as_deref().unwrap_or(PNG)))
-            .collect()
+    /// The name of a picture's file.
+    pub fn name(&self, number: usize, path: &Path) -> String {
+        let is_jpeg = !self.opaque && self.used[number].file.as_ref().is_some_and(|file| !is_png(file));
+        format!("{}_{number}.{}", stem(path), if is_jpeg { "jpg" } else { "png" })
     }
-}
-
-const PNG: &[u8] = b"\x89PNG";
-
-fn picture_name(path: &Path, number: usize, contents: &[u8]) -> String {
-    format!("{}_{number}.{}", stem(path), if is_png(contents) { "png" } else { "jpg" })
 }
 
 /// The file's name without its ending, and without blanks, which not every reader of names takes.
@@ -93,17 +95,19 @@ pub(super) fn name_of(name: &str) -> String {
 }
 
 pub(super) fn is_png(contents: &[u8]) -> bool {
-    contents.starts_with(PNG)
+    contents.starts_with(b"\x89PNG")
 }
 
 /// A picture's own file if it came from a PNG or JPEG, else a PNG of its texels.
 pub(super) fn file_of(picture: &Picture) -> Vec<u8> {
-    picture.file.clone().unwrap_or_else(|| {
-        let mut out = Vec::new();
-        let [width, height] = picture.size();
-        image::codecs::png::PngEncoder::new(&mut out)
-            .write_image(picture.texels().as_flattened(), width, height, image::ExtendedColorType::Rgb8)
-            .expect("a picture is as large as it says, and memory takes what is written to it");
-        out
-    })
+    picture.file.clone().unwrap_or_else(|| png_of(picture))
+}
+
+fn png_of(picture: &Picture) -> Vec<u8> {
+    let mut out = Vec::new();
+    let [width, height] = picture.size();
+    image::codecs::png::PngEncoder::new(&mut out)
+        .write_image(picture.texels().as_flattened(), width, height, image::ExtendedColorType::Rgb8)
+        .expect("a picture is as large as it says, and memory takes what is written to it");
+    out
 }

@@ -12,7 +12,7 @@ use crate::scene::{Material, Texture};
 use glam::{DVec2, DVec3, Vec3};
 use std::path::{Path, PathBuf};
 
-pub use files::write;
+pub use files::{prepare, write};
 
 /// What is written to a file.
 #[derive(Clone, Debug, Default)]

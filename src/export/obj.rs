@@ -119,7 +119,7 @@ fn describe(out: &mut String, number: usize, material: &Material, pictures: &mut
         if let Some(texture) = texture {
             let index = pictures.number(&texture.picture);
             let clamp = if texture.wrap == [Wrap::Clamp; 2] { "-clamp on " } else { "" };
-            let _ = writeln!(out, "{keyword} {clamp}{}", pictures.names(path)[index]);
+            let _ = writeln!(out, "{keyword} {clamp}{}", pictures.name(index, path));
         }
     };
     map("map_Kd", &material.base_texture);

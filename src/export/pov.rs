@@ -10,7 +10,7 @@ use std::path::Path;
 /// The scene and its pictures. What POV-Ray cannot do is left out: mirrored textures, and emission where a
 /// texture is involved besides the base colour's.
 pub(super) fn encode(model: &Model, path: &Path) -> Vec<File> {
-    let mut pictures = Pictures::default();
+    let mut pictures = Pictures::opaque();
     let mut out = format!("// terrell {}: {}\n", env!("CARGO_PKG_VERSION"), name_of(&model.name));
     if let Some(eye) = &model.eye {
         let [width, height] = eye.size;
@@ -124,11 +124,10 @@ fn glow(pigment: &str, times: [f32; 3]) -> String {
 
 fn image_map(texture: &Texture, pictures: &mut Pictures, path: &Path) -> String {
     let index = pictures.number(&texture.picture);
-    let name = &pictures.names(path)[index];
-    let kind = if name.ends_with("png") { "png" } else { "jpeg" };
+    let name = pictures.name(index, path);
     let once = if texture.wrap == [Wrap::Clamp; 2] { " once" } else { "" };
     let blend = if texture.blocky { "" } else { " interpolate 2" };
-    format!("image_map {{ {kind} \"{name}\" gamma srgb map_type 0{once}{blend} }}")
+    format!("image_map {{ png \"{name}\" gamma srgb map_type 0{once}{blend} }}")
 }
 
 #[cfg(test)]
