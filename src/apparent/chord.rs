@@ -38,7 +38,7 @@ impl Line {
         let least = 1e-17 * from.length().max(to.length());
         Self {
             speed,
-            height: (from.cross(to).length() / length).max(least),
+            height: (from.cross(along).length() / length).max(least),
             start: from.dot(along) / length,
             length,
         }
@@ -103,31 +103,28 @@ pub(super) struct Cuts {
     pub fill: f64,
 }
 
-/// No edge is cut into more pieces.
-const MOST_PIECES: usize = 1_000_000;
-
 /// Cuts one edge, as several observers (or one at several moments) meet it, into the fewest pieces that keep within
-/// `tolerance` of what each of them sees, all pieces about equally good; none if there are too many.
+/// `tolerance` of what each of them sees, all pieces about equally good; none if they are more than `most`.
 ///
 /// r′ is convex, so that a piece is the worse the longer it is, and going from one end as far as possible each time
 /// gives the fewest. Their number grows as 1/√tolerance.
-pub(super) fn cuts(lines: &[Line], tolerance: f64) -> Option<Cuts> {
+pub(super) fn cuts(lines: &[Line], tolerance: f64, most: usize) -> Option<Cuts> {
     let off = lines.iter().map(|line| line.deviation(0.0, 1.0)).fold(0.0, f64::max);
     if off <= tolerance {
         return Some(Cuts { at: Vec::new(), fill: (off / tolerance).sqrt() });
     }
-    let mut at = greedy(lines, tolerance, MOST_PIECES)?;
+    let mut at = greedy(lines, tolerance, most)?;
     // The same number for the least tolerance: no stub at the end.
     let pieces = at.len() + 1;
-    let (mut least, mut most) = (0.0, 1.0);
+    let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..12 {
-        let middle = 0.5 * (least + most);
+        let middle = 0.5 * (low + high);
         match greedy(lines, middle * tolerance, pieces) {
-            Some(better) => (at, most) = (better, middle),
-            None => least = middle,
+            Some(better) => (at, high) = (better, middle),
+            None => low = middle,
         }
     }
-    Some(Cuts { at, fill: f64::sqrt(most) })
+    Some(Cuts { at, fill: f64::sqrt(high) })
 }
 
 fn greedy(lines: &[Line], tolerance: f64, most: usize) -> Option<Vec<f64>> {
@@ -170,12 +167,25 @@ pub(super) fn bulge(speed: f64, offsets: [DVec3; 3]) -> Option<([f64; 3], f64)> 
         return None;
     }
     let foot = normal * (normal.dot(a) / square);
-    let height = foot.length();
-    let from_a = foot + gradient * (height / flat.sqrt()) - a;
+    let from_a = foot + gradient * (foot.length() / flat.sqrt()) - a;
     let (v, w) = (to_b.dot(from_a), to_c.dot(from_a));
     let weights = [1.0 - v - w, v, w];
-    let off = speed * (ra + gradient.dot(foot - a) - height * flat.sqrt());
-    weights.iter().all(|w| *w > 1e-9).then_some((weights, off))
+    if !weights.iter().all(|w| *w > 1e-9) {
+        return None;
+    }
+    // Σ λᵢ r′ᵢ − r′ = Σ λᵢ |xᵢ × x|²/(r′(r′ᵢr′ + xᵢ·x)) for any point x = Σ λᵢ xᵢ, without cancellation.
+    let from_a = v * ab + w * ac;
+    let at = a + from_a;
+    let r = at.length();
+    let gap = |i: usize, to: DVec3| {
+        let corner = offsets[i];
+        let below = r * (corner.length() * r + corner.dot(at));
+        // At the observer, and of a corner opposite, it is what it was before taking it apart.
+        let gap = if below > 0.0 { corner.cross(to).length_squared() / below } else { corner.length() };
+        weights[i] * gap
+    };
+    let off = speed * (gap(0, from_a) + gap(1, from_a - ab) + gap(2, from_a - ac));
+    Some((weights, off))
 }
 
 #[cfg(test)]
@@ -261,7 +271,7 @@ mod tests {
                 here = good;
                 pieces += 1;
             }
-            let cuts = cuts(&[line], tolerance).unwrap();
+            let cuts = cuts(&[line], tolerance, 10_000).unwrap();
             assert_eq!(cuts.at.len() + 1, pieces, "{line:?}");
             let ends = [&[0.0], &cuts.at[..], &[1.0]].concat();
             for piece in ends.windows(2) {

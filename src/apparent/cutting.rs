@@ -98,7 +98,7 @@ impl Cutting {
             return Err(CuttingError::BelowDigits { tolerance, least });
         }
         let fault = CuttingError::TooMany { tolerance, most };
-        let edges = Edges::new(moments, tolerance).ok_or(fault)?;
+        let edges = Edges::new(moments, tolerance, most).ok_or(fault)?;
         let own = (mesh.vertex_count() + edges.inserted.len()) as u32;
         let made = AtomicUsize::new(0);
         let size = (count / 64).clamp(1, CHUNK);
@@ -172,11 +172,15 @@ impl Cutting {
     }
 }
 
-/// What rounding leaves uncertain of apparent positions.
+/// What rounding leaves uncertain of apparent positions: that of the distance, and that of the coordinates at rest,
+/// stretched.
 fn noise(moment: &Moment<'_>) -> f64 {
-    let distance = |v: usize| moment.map.offset_rest(moment.mesh.vertex(v as u32)).length();
-    let farthest = (0..moment.mesh.vertex_count()).map(distance).fold(0.0, f64::max);
-    64.0 * f64::EPSILON * moment.map.speed() * farthest
+    let Moment { mesh, map } = moment;
+    let of = |v: usize| {
+        let x_rest = mesh.vertex(v as u32);
+        map.see(x_rest).distance + map.gamma() * x_rest.length()
+    };
+    64.0 * f64::EPSILON * (0..mesh.vertex_count()).into_par_iter().map(of).reduce(|| 0.0, f64::max)
 }
 
 /// The edges of a mesh, cut; each once for all triangles that share both its vertices.
@@ -193,7 +197,7 @@ struct Edges {
 
 impl Edges {
     /// None if there are too many pieces.
-    fn new(moments: &[Moment<'_>], tolerance: f64) -> Option<Self> {
+    fn new(moments: &[Moment<'_>], tolerance: f64, most: usize) -> Option<Self> {
         let mesh = moments[0].mesh;
         let mut ends: Vec<[u32; 2]> = mesh
             .triangles
@@ -204,6 +208,7 @@ impl Edges {
         ends.dedup();
         let reversed: Vec<bool> =
             ends.iter().map(|&[a, b]| mesh.vertex(a).to_array() > mesh.vertex(b).to_array()).collect();
+        let made = AtomicUsize::new(0);
         let cuts: Vec<Cuts> = ends
             .par_iter()
             .zip(&reversed)
@@ -214,7 +219,10 @@ impl Edges {
                     let offset = |v| map.offset_rest(mesh.vertex(v));
                     Line::new(map.speed(), offset(from), offset(to))
                 }));
-                cuts(lines, OF_SIDES * tolerance)
+                let cuts = cuts(lines, OF_SIDES * tolerance, most)?;
+                // Each will be a corner of a triangle more.
+                let made = made.fetch_add(cuts.at.len(), Ordering::Relaxed);
+                (made + cuts.at.len() <= most).then_some(cuts)
             })
             .collect::<Option<_>>()?;
         let total: usize = cuts.iter().map(|c| c.at.len()).sum();
@@ -331,7 +339,7 @@ impl Cutter<'_> {
                 .enumerate()
                 .map(|(m, moment)| Line::new(moment.map.speed(), self.offset(m, a), self.offset(m, b))),
         );
-        let cuts = cuts(&lines, OF_SIDES * self.tolerance);
+        let cuts = cuts(&lines, OF_SIDES * self.tolerance, self.most);
         self.lines = lines;
         let cuts = cuts?;
         let start = self.sides.len();
