@@ -1,5 +1,6 @@
 use super::Fault;
-use super::render::{ColorFlag, check_target, is_still};
+use super::look::ColorFlag;
+use super::render::{check_target, is_still};
 use super::source;
 use super::values::{number, size, when};
 use super::velocity::VelocityFlags;
