@@ -23,7 +23,7 @@ fn body(name: &str, mut mesh: Mesh, beta: DVec3, origin: Event<terrell::geodesic
 /// Seen from the origin, looking along y.
 fn scene(bodies: Vec<Body>, fov_deg: f64) -> Scene {
     let view = View { fov_deg: Some(fov_deg), size: SIZE, ..View::default() };
-    Scene { name: "test".into(), bodies, view, animation: None, notes: Vec::new() }
+    Scene::new("test", bodies, view)
 }
 
 fn drawn(scene: &Scene, options: OverlayOptions) -> (Camera, Film, Vec<u8>) {

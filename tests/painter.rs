@@ -9,7 +9,7 @@ use terrell::film::{Film, NOTHING};
 use terrell::geodesic::{Celerity, Event};
 use terrell::relativity::{ApparentMap, Motion};
 use terrell::render::{Options, Raster, render};
-use terrell::scene::{Body, Camera, Mesh, Projection, Scene, Speed, View, builtin_scenes, shapes};
+use terrell::scene::{Body, Camera, Mesh, Projection, Scene, Speed, View, builtin_scene, shapes};
 
 fn both(scene: &Scene, camera: &Camera, samples: u32) -> [Film; 2] {
     [Raster::Cpu, Raster::Skia].map(|raster| {
@@ -69,8 +69,8 @@ fn is_order(scene: &Scene, camera: &Camera, [right, painted]: &[Film; 2], i: usi
     beside(scene, camera, painted, i, false) < BESIDE
 }
 
-fn builtin(which: usize, beta: f64, projection: Projection) -> Scene {
-    let mut scene = builtin_scenes()[which].scene();
+fn builtin(which: &str, beta: f64, projection: Projection) -> Scene {
+    let mut scene = builtin_scene(which).unwrap().scene();
     scene.set_speed(Speed::Along(beta / (1.0 - beta * beta).sqrt())).unwrap();
     if beta == 0.0 {
         scene.view.nearest = None;
@@ -86,7 +86,7 @@ fn builtin(which: usize, beta: f64, projection: Projection) -> Scene {
 fn the_painter_differs_from_the_z_buffer_at_outlines_and_by_order() {
     println!("scene   β      projection    covered   other face    away from outlines");
     for projection in [Projection::Pinhole, Projection::Fisheye, Projection::Panorama] {
-        for which in 0..3 {
+        for which in ["cube", "gate", "lattice"] {
             for beta in [0.0, 0.5, 0.9, 0.99] {
                 let scene = builtin(which, beta, projection);
                 let camera = scene.camera().unwrap();
@@ -155,13 +155,7 @@ fn single_triangles_are_painted_where_they_are() {
             let corners = [0; 3].map(|_| random.point(3.0));
             let mesh = Mesh::new(&corners, vec![[0, 1, 2]]);
             let velocity = random.point(0.5);
-            let scene = Scene {
-                name: "t".into(),
-                bodies: vec![body(mesh, velocity)],
-                view: view.clone(),
-                animation: None,
-                notes: vec![],
-            };
+            let scene = Scene::new("t", vec![body(mesh, velocity)], view.clone());
             let camera = scene.camera().unwrap();
             let films = both(&scene, &camera, 1);
             let (all, inner) = differences(&films);
@@ -186,13 +180,7 @@ fn single_triangles_are_painted_where_they_are() {
 fn a_surface_around_the_camera_has_no_seams() {
     for view in views() {
         let ball = shapes::sphere(3);
-        let scene = Scene {
-            name: "ball".into(),
-            bodies: vec![body(ball, DVec3::new(0.3, 0.5, -0.2))],
-            view: view.clone(),
-            animation: None,
-            notes: vec![],
-        };
+        let scene = Scene::new("ball", vec![body(ball, DVec3::new(0.3, 0.5, -0.2))], view.clone());
         let camera = scene.camera().unwrap();
         let films = both(&scene, &camera, 1);
         assert_eq!(films[1].covered(), films[0].covered(), "{:?}", view.projection);
@@ -203,7 +191,7 @@ fn a_surface_around_the_camera_has_no_seams() {
 
 #[test]
 fn samples_average_as_they_do_elsewhere() {
-    let scene = builtin(0, 0.9, Projection::Pinhole);
+    let scene = builtin("cube", 0.9, Projection::Pinhole);
     let camera = scene.camera().unwrap();
     let [right, painted] = both(&scene, &camera, 16);
     let grey = |film: &Film| film.color.iter().filter(|c| c[1] > 0.02 && c[1] < 0.6).count();

@@ -119,7 +119,7 @@ fn random_scene(random: &mut Random, fastest: f64) -> Scene {
         size: [72, 54],
         nearest: None,
     };
-    Scene { name: "random".into(), bodies, view, animation: None, notes: Vec::new() }
+    Scene::new("random", bodies, view)
 }
 
 /// Largest γβ of a body or the camera, and how many scenes.
@@ -226,7 +226,7 @@ fn a_wall_close_by() {
             ..View::default()
         };
         let bodies = vec![Body { name: "wall".into(), mesh: wall.clone(), motion, clip: None }];
-        let scene = Scene { name: "wall".into(), bodies, view, animation: None, notes: Vec::new() };
+        let scene = Scene::new("wall", bodies, view);
         let camera = scene.camera().unwrap();
         let (film, _) = render(&scene, &camera, &Options::default(), |_| ()).unwrap();
         let tracer = Tracer::new(&scene, &camera);

@@ -34,7 +34,7 @@ fn scene(mesh: Mesh, celerity: DVec3, origin: DVec3, eye: DVec3, fov_deg: f64) -
         size: [160, 120],
         ..View::default()
     };
-    let scene = Scene { name: "square".into(), bodies: vec![body], view, animation: None, notes: Vec::new() };
+    let scene = Scene::new("square", vec![body], view);
     let camera = scene.camera().unwrap();
     (scene, camera)
 }

@@ -1,6 +1,7 @@
 //! parse → run → report; a file a subcommand.
 
 mod animate;
+mod completions;
 mod drawing;
 mod locate;
 mod look;
@@ -13,6 +14,7 @@ mod values;
 mod velocity;
 
 use clap::{Parser, Subcommand};
+use std::io::IsTerminal;
 use std::process::ExitCode;
 
 /// See relativistic motion: any mesh as it looks at any speed.
@@ -38,6 +40,7 @@ enum Command {
     Transform(transform::Transform),
     Locate(locate::Locate),
     Scenes(scenes::Scenes),
+    Completions(completions::Completions),
 }
 
 /// What went wrong, told to people.
@@ -64,13 +67,20 @@ pub(crate) fn run() -> ExitCode {
         Command::Transform(transform) => transform.run(),
         Command::Locate(locate) => locate.run(),
         Command::Scenes(scenes) => scenes.run(),
+        Command::Completions(completions) => completions.run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(fault) => {
             let closed = fault.downcast_ref::<std::io::Error>();
-            eprintln!("error: {fault}");
+            eprintln!("{} {fault}", error_mark());
             ExitCode::from(if closed.is_some() { FAILURE } else { MISTAKE })
         }
     }
+}
+
+/// "error:", in red on a terminal whose user has not asked for none (NO_COLOR).
+fn error_mark() -> &'static str {
+    let colored = std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
+    if colored && std::io::stderr().is_terminal() { "\x1b[1;31merror:\x1b[0m" } else { "error:" }
 }

@@ -237,6 +237,7 @@ impl Done<'_> {
             "samples": options.samples,
             "camera": summary::camera(camera),
             "bodies": summary::bodies(scene, camera),
+            "lamps": summary::lamps(scene),
             "triangles": report.triangles,
             "pieces": report.pieces,
             "pixels_covered": film.covered(),

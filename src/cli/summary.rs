@@ -53,6 +53,14 @@ pub fn bodies(scene: &Scene, camera: &Camera) -> Value {
     scene.bodies.iter().zip(gammas(scene, camera)).map(body).collect()
 }
 
+pub fn lamps(scene: &Scene) -> Value {
+    scene
+        .lamps
+        .iter()
+        .map(|lamp| json!({ "name": lamp.name, "color": lamp.color, "intensity": lamp.intensity }))
+        .collect()
+}
+
 pub fn color(coloring: Coloring) -> &'static str {
     match coloring {
         Coloring::Geometry => "geometry",

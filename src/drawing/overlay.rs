@@ -126,13 +126,15 @@ impl Overlay {
         let mut lines: Vec<Vec<DVec2>> = Vec::new();
         for (index, body) in shot.scene.bodies.iter().enumerate() {
             let map = ApparentMap::new(&body.motion, &shot.camera.observer);
+            // Posed, it has the same triangles.
+            let mesh = body.mesh_seen(&shot.camera.observer);
             let curves = Curves {
                 film: shot.film,
                 lens,
                 field: &field,
                 tolerance: shot.tolerance,
                 body: index,
-                mesh: &body.mesh,
+                mesh: &mesh,
                 map: &map,
             };
             lines.extend(curves.seen(&self.edges_of(&body.mesh, which)));

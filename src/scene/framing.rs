@@ -49,6 +49,7 @@ pub fn authored(name: &str, imported: Imported, celerity: Option<Celerity>, lens
         None => Scene {
             name: name.to_owned(),
             bodies: imported.parts.into_iter().map(Part::into_body).collect(),
+            lamps: imported.lamps,
             view,
             animation: None,
             notes: imported.notes,
@@ -74,6 +75,7 @@ fn passing(
     Scene {
         name: name.to_owned(),
         bodies: imported.parts.into_iter().map(body).collect(),
+        lamps: imported.lamps,
         view,
         animation: None,
         notes: imported.notes,

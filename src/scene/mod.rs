@@ -9,6 +9,7 @@ mod file;
 mod fingerprint;
 mod framing;
 mod import;
+mod lamp;
 mod material;
 mod mesh;
 mod path;
@@ -25,6 +26,7 @@ pub use file::{SceneError, parse_scene};
 pub use fingerprint::Fingerprint;
 pub use framing::{authored, framed};
 pub use import::{ImportError, Imported, Part, import, import_obj, is_mesh_file};
+pub use lamp::{Lamp, LampKind};
 pub use material::Material;
 pub use mesh::{Mesh, MeshError, Paint};
 pub use path::{CameraPath, Key, PathError};
@@ -40,6 +42,8 @@ pub struct Scene {
     pub name: String,
     /// In the scene's order.
     pub bodies: Vec<Body>,
+    /// Lamps that files bring.
+    pub lamps: Vec<Lamp>,
     /// The camera, before a moment is chosen.
     pub view: View,
     /// How it is filmed, if it says so.
@@ -72,6 +76,11 @@ pub struct TooFast {
 }
 
 impl Scene {
+    /// Bodies and a view, and nothing else.
+    pub fn new(name: &str, bodies: Vec<Body>, view: View) -> Self {
+        Self { name: name.to_owned(), bodies, lamps: Vec::new(), view, animation: None, notes: Vec::new() }
+    }
+
     /// The camera at the moment the view asks for.
     ///
     /// # Errors

@@ -56,7 +56,7 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         None => View::default(),
     };
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let mut scene = Scene { name, bodies, view, animation: None, notes };
+    let mut scene = Scene { name, bodies, lamps: Vec::new(), view, animation: None, notes };
     if let Some(table) = &file.animation {
         scene.animation = Some(animation::read_animation(&source, table, &scene)?);
     }

@@ -4,7 +4,7 @@ mod gltf;
 mod obj;
 mod picture;
 
-use super::{Body, Clip, Material, Mesh, MeshError, View};
+use super::{Body, Clip, Lamp, Material, Mesh, MeshError, View};
 use crate::relativity::Motion;
 use glam::{DAffine3, DVec3};
 use std::path::{Path, PathBuf};
@@ -17,6 +17,8 @@ pub struct Imported {
     pub parts: Vec<Part>,
     /// The camera in it, if any.
     pub view: Option<View>,
+    /// The lamps in it.
+    pub lamps: Vec<Lamp>,
     /// What was passed over, for people to read.
     pub notes: Vec<String>,
 }

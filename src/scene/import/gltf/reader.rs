@@ -4,7 +4,7 @@ use super::extras::Extras;
 use super::motion::{Animated, placement};
 use super::surface::Surfaces;
 use crate::relativity::Motion;
-use crate::scene::{Aim, Clip, Joint, Mesh, Paint, Projection, View};
+use crate::scene::{Aim, Clip, Joint, Lamp, LampKind, Mesh, Paint, Projection, View};
 use glam::{DAffine3, DVec3};
 use gltf::mesh::Mode;
 use std::path::Path;
@@ -21,11 +21,17 @@ pub(super) struct Reader {
     z_up: bool,
     parts: Vec<Part>,
     view: Option<View>,
+    lamps: Vec<Lamp>,
     notes: Vec<String>,
     /// Whether any primitive has a material or vertex colours.
     colored: bool,
     visited: Vec<bool>,
+    /// So far, or triangles where there are more of these.
+    vertices: usize,
 }
+
+/// A small file can use a mesh any number of times; each is kept by itself.
+const MOST_VERTICES: usize = 50_000_000;
 
 /// Where the children of a node stand.
 #[derive(Clone)]
@@ -61,9 +67,11 @@ impl Reader {
             z_up: generator.contains("Blender"),
             parts: Vec::new(),
             view: None,
+            lamps: Vec::new(),
             notes,
             colored: false,
             visited: vec![false; file.nodes().len()],
+            vertices: 0,
         })
     }
 
@@ -135,8 +143,8 @@ impl Reader {
             if node.skin().is_some() {
                 self.note("skins are not animated: the mesh is drawn as it was bound");
             }
-            if node.light().is_some() {
-                self.note("lamps are left out: surfaces shine by themselves");
+            if let Some(light) = node.light() {
+                self.lamp(&node, &light, &place);
             }
             if let Some(camera) = node.camera() {
                 self.camera(&camera, &place, &extras)?;
@@ -186,8 +194,11 @@ impl Reader {
                 }
             };
             let whole = Arc::make_mut(&mut self.parts[part].mesh);
-            if whole.vertex_count() + read.vertex_count() > u32::MAX as usize {
-                return Err("it has more than 4 294 967 295 vertices".into());
+            self.vertices += read.vertex_count().max(read.triangles.len());
+            if self.vertices > MOST_VERTICES {
+                return Err(format!(
+                    "with every use of its meshes counted it has more than {MOST_VERTICES} vertices or triangles; use it in parts"
+                ));
             }
             whole.append(read.placed(&place.within));
         }
@@ -301,6 +312,28 @@ impl Reader {
         Ok(())
     }
 
+    fn lamp(&mut self, node: &gltf::Node<'_>, light: &gltf::khr_lights_punctual::Light<'_>, place: &Place) {
+        use gltf::khr_lights_punctual::Kind;
+        self.note("lamps are read, but do not light anything yet: surfaces shine by themselves");
+        let within = Clip::new(place.joints.clone()).pose(0.0) * place.within;
+        // Lamps look along −z.
+        let direction = within.transform_vector3(-DVec3::Z).normalize_or_zero();
+        let position = within.translation;
+        self.lamps.push(Lamp {
+            name: light.name().map_or_else(|| named(node), str::to_owned),
+            kind: match light.kind() {
+                Kind::Directional => LampKind::Distant { direction },
+                Kind::Point => LampKind::Point { position },
+                Kind::Spot { inner_cone_angle, outer_cone_angle } => {
+                    LampKind::Spot { position, direction, cone: [inner_cone_angle, outer_cone_angle] }
+                }
+            },
+            color: light.color(),
+            intensity: light.intensity(),
+            motion: place.motion,
+        });
+    }
+
     fn finish(mut self) -> Result<Imported, String> {
         for part in &mut self.parts {
             // Of all materials those it uses, in their order.
@@ -320,7 +353,7 @@ impl Reader {
         if !self.colored {
             self.note("the mesh has no colours; painted in clay by the direction its faces look");
         }
-        Ok(Imported { parts: self.parts, view: self.view, notes: self.notes })
+        Ok(Imported { parts: self.parts, view: self.view, lamps: self.lamps, notes: self.notes })
     }
 
     fn note(&mut self, note: &str) {
