@@ -1,0 +1,175 @@
+//! `terrell animate` as its users meet it.
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+
+fn terrell(words: &[&str], folder: &Path) -> std::process::Output {
+    let mut command = Command::cargo_bin("terrell").unwrap();
+    command.args(words).current_dir(folder).output().unwrap()
+}
+
+fn good(words: &[&str], folder: &Path) -> String {
+    let out = terrell(words, folder);
+    assert!(out.status.success(), "{words:?}: {}", String::from_utf8_lossy(&out.stderr));
+    String::from_utf8(out.stdout).unwrap()
+}
+
+fn bad(words: &[&str], folder: &Path) -> String {
+    let out = terrell(words, folder);
+    let message = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert_eq!(out.status.code(), Some(2), "{words:?}: {message}");
+    assert!(message.starts_with("error: "), "{message}");
+    message
+}
+
+fn pixels(path: PathBuf) -> image::RgbImage {
+    image::open(path).unwrap().into_rgb8()
+}
+
+const SMALL: [&str; 4] = ["--size", "64x48", "--frames", "4"];
+
+fn film<'a>(words: &[&'a str]) -> Vec<&'a str> {
+    [&["animate"], words, &SMALL].concat()
+}
+
+#[test]
+fn a_folder_goes_on_where_it_was_stopped_and_notices_what_changed() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let words = film(&["cube", "-o", "film/"]);
+    assert!(good(&words, here).contains("4 frames"));
+    let frame = |i: usize| here.join(format!("film/frame_{i:05}.png"));
+    let written = |i: usize| frame(i).metadata().unwrap().modified().unwrap();
+    let (first, lost) = (written(0), pixels(frame(2)));
+    std::fs::remove_file(frame(2)).unwrap();
+    assert!(good(&words, here).contains("3 frames were there already"));
+    assert_eq!((written(0), pixels(frame(2))), (first, lost));
+    let changed = good(&film(&["cube", "--beta", "0.5", "-o", "film"]), here);
+    assert!(changed.contains("changed") && changed.contains("4 frames were drawn anew"), "{changed}");
+    assert_ne!(written(0), first);
+    // In the middle of its way the cube looks otherwise at another speed.
+    let again = good(&["animate", "cube", "--size", "64x48", "--frames", "2", "--quiet", "-o", "film"], here);
+    assert!(again.is_empty() && !frame(2).exists());
+    std::fs::write(frame(9), "a picture of someone else").unwrap();
+    assert!(bad(&words, here).contains("frame_00009.png"));
+}
+
+#[test]
+fn every_format_is_written_and_nothing_is_left_of_what_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    for (name, start) in [("a.mp4", &b"ftyp"[..]), ("a.gif", b"GIF89a"), ("a.apng", b"\x89PNG")] {
+        good(&film(&["cube", "-o", name]), here);
+        let bytes = std::fs::read(here.join(name)).unwrap();
+        assert!(bytes[..16].windows(start.len()).any(|w| w == start), "{name}");
+    }
+    let gif = std::io::BufReader::new(std::fs::File::open(here.join("a.gif")).unwrap());
+    use image::AnimationDecoder;
+    assert_eq!(image::codecs::gif::GifDecoder::new(gif).unwrap().into_frames().count(), 4);
+    let before = std::fs::read_dir(here).unwrap().count();
+    for (words, part) in [
+        (film(&["cube", "-o", "b.avi"]), ".avi"),
+        (film(&["cube", "-o", "no/b.mp4"]), "no folder"),
+        (film(&["cube", "-o", "b.gif", "--fps", "100"]), "100"),
+        (film(&["cube", "-o", "b.mp4", "--fps", "0"]), "fps"),
+        (vec!["animate", "cube", "--frames", "0"], "0 frames"),
+        (film(&["cube", "--beta", "0,0,0", "--time", "0,nan"]), "finite"),
+        (film(&["cube", "--range", "1"]), "FROM,TO"),
+        (film(&["cube", "--apparent", "tram"]), "tram"),
+        (film(&["cube", "--apparent", "cube", "--time", "0,1"]), "--time"),
+        (film(&["cubes"]), "'cube'"),
+    ] {
+        let message = terrell(&words, here);
+        assert_eq!(message.status.code(), Some(2), "{words:?}");
+        let message = String::from_utf8_lossy(&message.stderr).into_owned();
+        assert!(message.contains(part), "{words:?}: {message}");
+    }
+    assert_eq!(std::fs::read_dir(here).unwrap().count(), before);
+}
+
+#[test]
+fn what_rests_cannot_be_filmed_unless_a_camera_goes_round_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let body = "[[body]]\nmesh = \"cube\"\n[camera]\nsize = [64, 48]\n";
+    std::fs::write(here.join("still.toml"), body).unwrap();
+    assert!(bad(&["animate", "still.toml"], here).contains("nothing moves"));
+    let round = format!(
+        "{body}[animation]\nframes = 3\n
+        [[animation.key]]\ntime = 0\nposition = [-4, 0, 0]\nlook_at = [0, 0, 0]\n
+        [[animation.key]]\ntime = 20\nposition = [0, -4, 0]\nlook_at = [0, 0, 0]\n
+        [[animation.key]]\ntime = 40\nposition = [4, 0, 0]\nlook_at = [0, 0, 0]\n"
+    );
+    std::fs::write(here.join("round.toml"), &round).unwrap();
+    good(&["animate", "round.toml", "-o", "round/"], here);
+    // Yellow, green, blue: the cube's sides.
+    let middle = |i: usize| pixels(here.join(format!("round/frame_{i:05}.png"))).get_pixel(32, 24).0;
+    let [a, b, c] = [0, 1, 2].map(middle);
+    assert!(a[0] > 200 && a[1] > 200 && a[2] < 120, "{a:?}");
+    assert!(b[1] > 200 && b[0] < 150, "{b:?}");
+    assert!(c[2] > 200 && c[0] < 180, "{c:?}");
+    std::fs::write(here.join("fast.toml"), round.replace("time = 20", "time = 2")).unwrap();
+    let message = bad(&["animate", "fast.toml"], here);
+    assert!(message.contains("fast.toml:") && message.contains("light speed"), "{message}");
+}
+
+#[test]
+fn beside_the_standard_it_is_the_film_in_slow_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    good(&film(&["cube", "--beside-standard", "-o", "both/"]), here);
+    good(&film(&["cube", "--beta", "0", "-o", "slow/"]), here);
+    good(&film(&["cube", "-o", "fast/"]), here);
+    for i in 0..4 {
+        let frame = |folder: &str| pixels(here.join(format!("{folder}/frame_{i:05}.png")));
+        let both = frame("both");
+        assert_eq!((both.width(), both.height()), (128, 48));
+        let half = |x| image::imageops::crop_imm(&both, x, 0, 64, 48).to_image();
+        assert_eq!(half(0), frame("slow"), "{i}");
+        assert_eq!(half(64), frame("fast"), "{i}");
+    }
+}
+
+#[test]
+fn several_scenes_are_one_film() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let json = good(&film(&["gate", "gate_back", "-o", "g.apng", "--json", "-"]), here);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((json["frames"].as_u64(), json["takes"][1]["scene"].as_str()), (Some(8), Some("gate_back")));
+    assert!(json["seconds"]["whole"].as_f64().unwrap() > 0.0);
+    #[cfg(target_os = "linux")]
+    assert!(json["peak_memory_bytes"].as_u64().unwrap() > 1_000_000);
+    std::fs::write(here.join("s.toml"), "camera = { size = [60, 60] }\n[[body]]\nmesh = \"cube\"\nvelocity = [0.5, 0, 0]\nposition = [0, 3, 0]\n").unwrap();
+    assert!(bad(&["animate", "cube", "s.toml"], here).contains("60x60"));
+}
+
+/// Ctrl-C: what there is then is whole, and goes on.
+#[cfg(unix)]
+#[test]
+fn stopped_by_its_user_it_leaves_whole_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let words = ["animate", "gate", "--size", "200x150", "--frames", "3000", "-o", "film/"];
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("terrell"))
+        .args(words)
+        .current_dir(here)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    while !here.join("film/frame_00003.png").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let id = child.id().to_string();
+    std::process::Command::new("kill").args(["-INT", &id]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let frames: Vec<_> = std::fs::read_dir(here.join("film")).unwrap().map(|f| f.unwrap().path()).collect();
+    let frames: Vec<_> = frames.into_iter().filter(|f| f.extension().is_some_and(|e| e == "png")).collect();
+    assert!(frames.len() >= 4 && frames.len() < 3000);
+    assert!(frames.iter().all(|f| pixels(f.clone()).width() == 200));
+    assert_eq!(
+        std::fs::read_dir(here.join("film")).unwrap().count(),
+        frames.len() + 1,
+        "frames and their list"
+    );
+}
