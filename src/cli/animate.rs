@@ -1,12 +1,12 @@
 use super::drawing::DrawingFlags;
 use super::look::LookFlags;
-use super::render::check_target;
+use super::report::{ReportFlags, check_target};
 use super::values::{number, range};
 use super::{Fault, summary};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -61,12 +61,8 @@ pub struct Animate {
     beside_standard: bool,
     #[command(flatten)]
     drawing: DrawingFlags,
-    /// Write what was done, with times and counts, as JSON; - for standard output
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// Say nothing unless something is wrong
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    report: ReportFlags,
 }
 
 /// Where a film goes.
@@ -128,15 +124,13 @@ impl Animate {
         }
         let output = self.output.clone().unwrap_or_else(|| format!("{}.mp4", takes[0].name()).into());
         let target = Target::of(&output)?;
-        if let Some(json) = &self.json {
-            check_target(json)?;
-        }
+        self.report.check(&output)?;
         let fps = takes[0].animation.fps;
         let mut shooting = Shooting {
             takes: &takes,
             options: &options,
             size,
-            bar: progress_bar(takes.iter().map(|t| t.animation.frames as usize).sum(), self.quiet),
+            bar: progress_bar(takes.iter().map(|t| t.animation.frames as usize).sum(), self.report.quiet),
             stop: stopped_by_user()?,
             tally: Tally::default(),
             notes: Vec::new(),
@@ -151,7 +145,9 @@ impl Animate {
         let whole = start.elapsed();
         let done =
             Done { takes: &takes, options: &options, output: &output, size, tally, whole, stopped, notes };
-        self.report(&done)?;
+        let summary = done.summary();
+        self.report.finish(Vec::new(), &summary)?;
+        self.report.tell(&done.line(), &summary)?;
         if stopped {
             // As a shell says of what was ended by Ctrl-C.
             std::process::exit(130);
@@ -160,11 +156,11 @@ impl Animate {
     }
 
     fn take(&self, source: &str) -> Result<Take, Fault> {
-        let speed = match self.look.velocity.speed()? {
+        let speed = match self.look.scene.velocity.speed()? {
             Some(Speed::Along(0.0)) => Some(Speed::Along(STANDARD_BETA)),
             speed => speed,
         };
-        let scene = self.look.open(source, speed)?;
+        let scene = self.look.scene.open(source, speed, |view| self.look.set_lens(view))?;
         let animation = self.animation(&scene)?;
         let cameras = animation.cameras(&scene)?;
         let panel = |scene: Scene, cameras: Vec<Camera>| -> Result<Panel, Fault> {
@@ -209,20 +205,6 @@ impl Animate {
             return Err(format!("--fps {} is not above 0", animation.fps).into());
         }
         Ok(animation)
-    }
-
-    fn report(&self, done: &Done<'_>) -> Result<(), Fault> {
-        let json_to_stdout = self.json.as_deref() == Some(Path::new("-"));
-        match &self.json {
-            Some(_) if json_to_stdout => writeln!(std::io::stdout(), "{:#}", done.summary())?,
-            Some(path) => picture::prepare(path, |to| writeln!(to, "{:#}", done.summary()))?.finish()?,
-            None => {}
-        }
-        if !self.quiet {
-            let line = done.line();
-            if json_to_stdout { eprint!("{line}") } else { std::io::stdout().write_all(line.as_bytes())? }
-        }
-        Ok(())
     }
 }
 

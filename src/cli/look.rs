@@ -7,9 +7,9 @@ use terrell::color::Coloring;
 use terrell::render::{Options, Raster};
 use terrell::scene::{Projection, Scene, Speed, View};
 
-/// How a scene is looked at: what pictures and films have in common.
+/// What there is to see, and how large: what everything made of a scene has in common.
 #[derive(Args)]
-pub struct LookFlags {
+pub struct SceneFlags {
     #[command(flatten)]
     pub velocity: VelocityFlags,
     /// Seconds of a file's own animation that pass in a unit of time; 0 stops it
@@ -21,6 +21,13 @@ pub struct LookFlags {
     /// Field of view in degrees: vertical (pinhole, fisheye)
     #[arg(long, value_name = "DEG", value_parser = number)]
     fov: Option<f64>,
+}
+
+/// How a scene is looked at: what pictures and films have in common.
+#[derive(Args)]
+pub struct LookFlags {
+    #[command(flatten)]
+    pub scene: SceneFlags,
     /// Projection
     #[arg(long, value_enum)]
     camera: Option<CameraFlag>,
@@ -65,11 +72,6 @@ enum RasterFlag {
 }
 
 impl LookFlags {
-    /// The scene, with what the flags say over what it says itself.
-    pub fn open(&self, scene: &str, speed: Option<Speed>) -> Result<Scene, Fault> {
-        source::open(scene, speed, self.animation_rate, |view| self.set_lens(view))
-    }
-
     pub fn options(&self) -> Result<Options, Fault> {
         if self.tolerance <= 0.0 {
             return Err(format!("--tolerance {} is not above 0 px", self.tolerance).into());
@@ -77,10 +79,7 @@ impl LookFlags {
         Ok(Options {
             tolerance: self.tolerance,
             samples: self.samples,
-            coloring: match self.color {
-                ColorFlag::Geometry => Coloring::Geometry,
-                ColorFlag::Doppler => Coloring::Doppler,
-            },
+            coloring: self.color.coloring(),
             raster: match self.raster {
                 RasterFlag::Cpu => Raster::Cpu,
                 RasterFlag::Skia => Raster::Skia,
@@ -89,7 +88,8 @@ impl LookFlags {
         })
     }
 
-    fn set_lens(&self, view: &mut View) {
+    /// What the flags say of the projection.
+    pub fn set_lens(&self, view: &mut View) {
         if let Some(camera) = self.camera {
             let projection = match camera {
                 CameraFlag::Pinhole => Projection::Pinhole,
@@ -100,7 +100,30 @@ impl LookFlags {
                 (view.projection, view.fov_deg) = (projection, None);
             }
         }
-        view.fov_deg = self.fov.or(view.fov_deg);
-        view.size = self.size.unwrap_or(view.size);
+    }
+}
+
+impl SceneFlags {
+    /// The scene, with what the flags say over what it says itself; `set_lens` does more to its lens.
+    pub fn open(
+        &self,
+        scene: &str,
+        speed: Option<Speed>,
+        set_lens: impl Fn(&mut View),
+    ) -> Result<Scene, Fault> {
+        source::open(scene, speed, self.animation_rate, |view| {
+            set_lens(view);
+            view.fov_deg = self.fov.or(view.fov_deg);
+            view.size = self.size.unwrap_or(view.size);
+        })
+    }
+}
+
+impl ColorFlag {
+    pub fn coloring(self) -> Coloring {
+        match self {
+            Self::Geometry => Coloring::Geometry,
+            Self::Doppler => Coloring::Doppler,
+        }
     }
 }

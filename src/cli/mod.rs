@@ -6,6 +6,7 @@ mod drawing;
 mod locate;
 mod look;
 mod render;
+mod report;
 mod scenes;
 mod source;
 mod summary;

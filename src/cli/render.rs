@@ -1,12 +1,14 @@
 use super::Fault;
 use super::drawing::{self, DrawingFlags};
 use super::look::LookFlags;
+use super::report::{ReportFlags, check_target};
+use super::source;
 use super::summary;
 use super::values::{number, when};
 use clap::Args;
 use serde_json::json;
-use std::io::{IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::io::IsTerminal;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use terrell::drawing::Shot;
 use terrell::film::Film;
@@ -42,12 +44,8 @@ pub struct Render {
     when: Option<String>,
     #[command(flatten)]
     drawing: DrawingFlags,
-    /// Write what was done, with times and counts, as JSON; - for standard output
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// Say nothing unless something is wrong
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    report: ReportFlags,
 }
 
 impl Render {
@@ -58,13 +56,12 @@ impl Render {
         let camera = scene.camera()?;
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
         Format::of(&output)?;
-        for path in [Some(&output), self.json.as_ref()].into_iter().flatten() {
-            check_target(path)?;
-        }
+        check_target(&output)?;
+        self.report.check(&output)?;
         let overlay = self.drawing.overlay(&scene)?;
         drawing::check_format(&overlay, &output)?;
         let read = start.elapsed();
-        let mut progress = Progress::new(self.quiet);
+        let mut progress = Progress::new(self.report.quiet);
         let (film, report) = render(&scene, &camera, &options, |step| progress.show(&scene, step))?;
         progress.clear();
         let before_writing = start.elapsed();
@@ -80,64 +77,19 @@ impl Render {
         let times = Times { read, write: start.elapsed() - before_writing, whole: start.elapsed() };
         let done =
             Done { scene: &scene, camera: &camera, options: &options, film: &film, report, output, times };
-        let json_to_stdout = self.json.as_deref() == Some(Path::new("-"));
-        match &self.json {
-            Some(path) if !json_to_stdout => {
-                // Both or none.
-                let json = picture::prepare(path, |to| writeln!(to, "{:#}", done.summary()))?;
-                let plain = json.path().is_file() || !json.path().exists();
-                if plain && json.path() == picture.path() {
-                    return Err(format!("{} cannot be both the picture and the JSON", path.display()).into());
-                }
-                picture.finish()?;
-                json.finish()?;
-            }
-            _ => picture.finish()?,
-        }
-        if json_to_stdout {
-            writeln!(std::io::stdout(), "{:#}", done.summary())?;
-        }
-        if !self.quiet {
-            let line = done.line();
-            if json_to_stdout { eprint!("{line}") } else { std::io::stdout().write_all(line.as_bytes())? }
-        }
-        Ok(())
+        let summary = done.summary();
+        self.report.finish(vec![picture], &summary)?;
+        self.report.tell(&done.line(), &summary)
     }
 
     /// The scene, with what the flags say over what it says itself.
     fn scene(&self) -> Result<Scene, Fault> {
-        let mut scene = self.look.open(&self.scene, self.look.velocity.speed()?)?;
-        let view = &mut scene.view;
-        if let Some(time) = self.time {
-            view.set_time(time)?;
-        }
-        if let Some(body) = &self.when {
-            view.nearest = Some(body.clone());
-        }
-        if view.nearest.is_some() && self.when.is_none() && is_still(&scene) {
-            // The scene's own moment has no meaning at rest; its time does.
-            scene.view.nearest = None;
-        }
+        let mut scene = self
+            .look
+            .scene
+            .open(&self.scene, self.look.scene.velocity.speed()?, |view| self.look.set_lens(view))?;
+        source::set_moment(&mut scene, self.time, self.when.as_deref())?;
         Ok(scene)
-    }
-}
-
-/// Whether neither bodies nor camera move.
-pub(super) fn is_still(scene: &Scene) -> bool {
-    let moves = |c: &terrell::geodesic::Celerity| c.direction().is_some();
-    !moves(&scene.view.celerity) && !scene.bodies.iter().any(|b| moves(&b.motion.celerity))
-}
-
-/// What cannot be written to is better known before the work than after.
-pub fn check_target(path: &Path) -> Result<(), Fault> {
-    if path.is_dir() {
-        return Err(format!("cannot write {}: it is a directory", path.display()).into());
-    }
-    match path.parent() {
-        Some(folder) if folder != Path::new("") && !folder.is_dir() => {
-            Err(format!("cannot write {}: there is no folder {}", path.display(), folder.display()).into())
-        }
-        _ => Ok(()),
     }
 }
 

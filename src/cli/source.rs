@@ -59,3 +59,23 @@ fn with_speed(mut scene: Scene, speed: Option<Speed>) -> Result<Scene, Fault> {
     }
     Ok(scene)
 }
+
+/// The moment the flags ask for: a world time, or when a body appears abreast.
+pub fn set_moment(scene: &mut Scene, time: Option<f64>, when: Option<&str>) -> Result<(), Fault> {
+    if let Some(time) = time {
+        scene.view.set_time(time)?;
+    }
+    if let Some(body) = when {
+        scene.view.nearest = Some(body.to_owned());
+    } else if is_still(scene) {
+        // The scene's own moment has no meaning at rest; its time does.
+        scene.view.nearest = None;
+    }
+    Ok(())
+}
+
+/// Whether neither bodies nor camera move.
+fn is_still(scene: &Scene) -> bool {
+    let moves = |c: &Celerity| c.direction().is_some();
+    !moves(&scene.view.celerity) && !scene.bodies.iter().any(|b| moves(&b.motion.celerity))
+}

@@ -1,20 +1,15 @@
 use super::Fault;
-use super::look::ColorFlag;
-use super::render::{check_target, is_still};
-use super::source;
-use super::values::{number, size, when};
-use super::velocity::VelocityFlags;
+use super::look::{ColorFlag, SceneFlags};
+use super::report::{ReportFlags, check_target};
+use super::values::{number, when};
+use super::{source, summary};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use terrell::color::Coloring;
 use terrell::export::{self, Format};
-use terrell::geodesic::{Event, Tetrad, World};
-use terrell::picture::{self, Pending};
-use terrell::relativity::ApparentMap;
-use terrell::scene::{Body, Camera, Scene, View};
+use terrell::geodesic::Tetrad;
+use terrell::scene::{Camera, Scene};
 use terrell::transform::{Axes, Options, Report, transform};
 
 /// The apparent shape of a scene, as a mesh for other programs
@@ -37,7 +32,7 @@ pub struct Transform {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    velocity: VelocityFlags,
+    look: SceneFlags,
     /// World time; a moving camera goes along its world line. With --animation the first and the last moment, T0,T1,
     /// on the camera's own clock, which agrees with the world's at the event the scene gives
     #[arg(long, value_name = "T|T0,T1", value_parser = moments)]
@@ -45,15 +40,6 @@ pub struct Transform {
     /// The moment at which a body appears abreast: "nearest BODY"
     #[arg(long, value_name = "\"nearest BODY\"", value_parser = when, conflicts_with_all = ["time", "animation"])]
     when: Option<String>,
-    /// Seconds of a file's own animation that pass in a unit of time; 0 stops it
-    #[arg(long, value_name = "R", value_parser = number)]
-    animation_rate: Option<f64>,
-    /// Pixels of the camera that is written along
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    size: Option<[u32; 2]>,
-    /// Its vertical field of view in degrees
-    #[arg(long, value_name = "DEG", value_parser = number)]
-    fov: Option<f64>,
     /// Largest distance between the triangles and the exact shape, in the scene's lengths; cost grows as 1/tolerance
     /// [default: a thousandth of the largest body]
     #[arg(long, value_name = "LENGTH", value_parser = number)]
@@ -73,12 +59,8 @@ pub struct Transform {
     /// Frames a second
     #[arg(long, value_name = "F", value_parser = number, default_value = "24", requires = "animation")]
     fps: f64,
-    /// Write what was done, with times and counts, as JSON; - for standard output
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// Say nothing unless something is wrong
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    report: ReportFlags,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -124,9 +106,8 @@ impl Transform {
         if Format::of(&output)? != Format::Glb && self.animation {
             return Err(export::ExportError::Still(output).into());
         }
-        for path in [Some(&output), self.json.as_ref()].into_iter().flatten() {
-            check_target(path)?;
-        }
+        check_target(&output)?;
+        self.report.check(&output)?;
         let same =
             |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
         if same(&output, self.scene.as_ref()) {
@@ -139,10 +120,7 @@ impl Transform {
                 FrameFlag::World => Axes::World,
                 FrameFlag::Camera => Axes::Camera,
             },
-            coloring: match self.color {
-                ColorFlag::Geometry => Coloring::Geometry,
-                ColorFlag::Doppler => Coloring::Doppler,
-            },
+            coloring: self.color.coloring(),
             ..Options::default()
         };
         let camera = Camera { observer: observers[0], ..camera };
@@ -150,40 +128,18 @@ impl Transform {
         let mut done =
             Done { scene: &scene, camera: &camera, options: &options, report, output, files: Vec::new() };
         model.extras = done.extras();
-        let mut files = export::prepare(&model, &done.output)?;
+        let files = export::prepare(&model, &done.output)?;
         done.files = files.iter().rev().map(|file| file.path().to_owned()).collect();
         let whole = start.elapsed();
-        let json_to_stdout = self.json.as_deref() == Some(Path::new("-"));
-        if let Some(path) = self.json.as_ref().filter(|_| !json_to_stdout) {
-            // All or none.
-            let json = picture::prepare(path, |to| writeln!(to, "{:#}", done.summary(whole)))?;
-            let plain = json.path().is_file() || !json.path().exists();
-            if plain && done.files.iter().any(|file| file == json.path()) {
-                return Err(format!("{} cannot be both the mesh and the JSON", path.display()).into());
-            }
-            files.push(json);
-        }
-        files.into_iter().try_for_each(Pending::finish)?;
-        if json_to_stdout {
-            writeln!(std::io::stdout(), "{:#}", done.summary(whole))?;
-        }
-        if !self.quiet {
-            let line = done.line(times.len(), whole, model.eye.is_none());
-            if json_to_stdout { eprint!("{line}") } else { std::io::stdout().write_all(line.as_bytes())? }
-        }
-        Ok(())
-    }
-
-    fn set_lens(&self, view: &mut View) {
-        view.fov_deg = self.fov.or(view.fov_deg);
-        view.size = self.size.unwrap_or(view.size);
+        let summary = done.summary(whole);
+        self.report.finish(files, &summary)?;
+        self.report.tell(&done.line(times.len(), whole, model.eye.is_none()), &summary)
     }
 
     /// The scene, with what the flags say over what it says itself.
     fn scene(&self) -> Result<Scene, Fault> {
-        let mut scene = source::open(&self.scene, self.velocity.speed()?, self.animation_rate, |view| {
-            self.set_lens(view)
-        })?;
+        let mut scene = self.look.open(&self.scene, self.look.velocity.speed()?, |_| ())?;
+        let mut time = None;
         match self.time {
             Some(Moments::At(_)) if self.animation => {
                 return Err("--animation needs two times: --time T0,T1".into());
@@ -191,17 +147,11 @@ impl Transform {
             Some(Moments::Range(..)) if !self.animation => {
                 return Err("--time with two times is for --animation; give one, or add --animation".into());
             }
-            Some(Moments::At(time)) => scene.view.set_time(time)?,
+            Some(Moments::At(at)) => time = Some(at),
             Some(Moments::Range(..)) => scene.view.nearest = None,
             None => {}
         }
-        if let Some(body) = &self.when {
-            scene.view.nearest = Some(body.clone());
-        }
-        if scene.view.nearest.is_some() && self.when.is_none() && is_still(&scene) {
-            // The scene's own moment has no meaning at rest; its time does.
-            scene.view.nearest = None;
-        }
+        source::set_moment(&mut scene, time, self.when.as_deref())?;
         Ok(scene)
     }
 
@@ -234,25 +184,9 @@ struct Done<'a> {
     files: Vec<PathBuf>,
 }
 
-fn event(e: Event<World>) -> Value {
-    let p = e.position();
-    json!([e.t(), p.x, p.y, p.z])
-}
-
 impl Done<'_> {
-    /// Relative γ of every body and the camera.
-    fn gammas(&self) -> Vec<f64> {
-        let gamma = |body: &Body| ApparentMap::new(&body.motion, &self.camera.observer).gamma();
-        self.scene.bodies.iter().map(gamma).collect()
-    }
-
     fn line(&self, frames: usize, whole: Duration, no_eye: bool) -> String {
-        let gammas = self.gammas();
-        let fastest = gammas.iter().copied().fold(1.0, f64::max);
-        let bodies = match gammas.len() {
-            1 => format!("1 body, γ {fastest:.4}"),
-            n => format!("{n} bodies, γ up to {fastest:.4}"),
-        };
+        let bodies = summary::bodies_in_words(&summary::gammas(self.scene, self.camera));
         let usual = if self.options.tolerance.is_none() { " (a thousandth of the largest body)" } else { "" };
         let frames = if frames > 1 { format!(", {frames} frames") } else { String::new() };
         let mut line = format!(
@@ -280,36 +214,20 @@ impl Done<'_> {
         }
     }
 
-    fn bodies(&self) -> Vec<Value> {
-        let body = |(body, gamma): (&Body, f64)| {
-            json!({
-                "name": body.name,
-                "triangles": body.mesh.triangles.len(),
-                "celerity": body.motion.celerity.vector().to_array(),
-                "origin": event(body.motion.origin),
-                "gamma_relative_to_camera": gamma,
-            })
-        };
-        self.scene.bodies.iter().zip(self.gammas()).map(body).collect()
-    }
-
     /// For those who find the mesh alone.
     fn extras(&self) -> serde_json::Map<String, Value> {
-        let observer = &self.camera.observer;
         let own = json!({
             "scene": self.scene.name,
             "spacetime": "flat",
             "frame": self.axes(),
             "tolerance": self.report.tolerance,
-            "camera": { "event": event(observer.event()), "celerity": observer.celerity().vector().to_array() },
-            "bodies": self.bodies(),
+            "camera": summary::camera(self.camera),
+            "bodies": summary::bodies(self.scene, self.camera),
         });
         [("terrell".to_owned(), own)].into_iter().collect()
     }
 
     fn summary(&self, whole: Duration) -> Value {
-        let observer = &self.camera.observer;
-        let axes = observer.axes();
         json!({
             "terrell": env!("CARGO_PKG_VERSION"),
             "scene": self.scene.name,
@@ -317,16 +235,10 @@ impl Done<'_> {
             "files": self.files,
             "spacetime": "flat",
             "frame": self.axes(),
-            "color": match self.options.coloring { Coloring::Geometry => "geometry", Coloring::Doppler => "doppler" },
+            "color": summary::color(self.options.coloring),
             "tolerance": self.report.tolerance,
-            "camera": {
-                "event": event(observer.event()),
-                "celerity": observer.celerity().vector().to_array(),
-                "right": axes[0].to_array(),
-                "up": axes[1].to_array(),
-                "forward": axes[2].to_array(),
-            },
-            "bodies": self.bodies(),
+            "camera": summary::camera(self.camera),
+            "bodies": summary::bodies(self.scene, self.camera),
             "triangles": self.report.triangles,
             "pieces": self.report.pieces,
             "vertices": self.report.vertices,
