@@ -1,6 +1,7 @@
 use super::drawing::DrawingFlags;
 use super::look::LookFlags;
 use super::report::{ReportFlags, check_target};
+use super::shooting::{Panel, Shooting, Take, Tally};
 use super::values::{number, range};
 use super::{Fault, summary};
 use clap::Args;
@@ -11,10 +12,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use terrell::drawing::{Overlay, Shot};
-use terrell::film::Film;
-use terrell::picture::{self, FrameFolder, Movie, MovieFormat};
-use terrell::render::{Options, render_again};
+use terrell::picture::MovieFormat;
+use terrell::render::Options;
 use terrell::scene::{Animation, Camera, Pace, STANDARD_BETA, Scene, Speed};
 
 /// A film of a scene
@@ -90,19 +89,6 @@ impl Target {
             _ => Ok(Self::Folder),
         }
     }
-}
-
-/// One scene seen by one camera a frame.
-struct Panel {
-    scene: Scene,
-    cameras: Vec<Camera>,
-    overlay: Option<Overlay>,
-}
-
-/// A scene on its way to frames: side by side what is to be seen side by side.
-struct Take {
-    panels: Vec<Panel>,
-    animation: Animation,
 }
 
 impl Animate {
@@ -208,18 +194,6 @@ impl Animate {
     }
 }
 
-impl Take {
-    fn name(&self) -> &str {
-        &self.panels[0].scene.name
-    }
-
-    /// Of a whole frame.
-    fn size(&self) -> [u32; 2] {
-        let size = self.panels[0].scene.view.size;
-        [size[0] * self.panels.len() as u32, size[1]]
-    }
-}
-
 /// A bar with the time left, on a terminal only.
 fn progress_bar(frames: usize, quiet: bool) -> ProgressBar {
     let shown = !quiet && std::io::stderr().is_terminal();
@@ -241,167 +215,6 @@ fn stopped_by_user() -> Result<Arc<AtomicBool>, Fault> {
         }
     })?;
     Ok(stop)
-}
-
-/// What it took.
-#[derive(Default)]
-struct Tally {
-    drawn: usize,
-    kept: usize,
-    changed: usize,
-    surplus: usize,
-    pieces: usize,
-    mapping: Duration,
-    shading: Duration,
-    coloring: Duration,
-    encoding: Duration,
-}
-
-/// A frame that waits to be written.
-struct Frame {
-    index: usize,
-    shows: String,
-    rgb: Vec<u8>,
-}
-
-struct Shooting<'a> {
-    takes: &'a [Take],
-    options: &'a Options,
-    size: [u32; 2],
-    bar: ProgressBar,
-    stop: Arc<AtomicBool>,
-    tally: Tally,
-    notes: Vec<String>,
-}
-
-impl Shooting<'_> {
-    fn shoot_movie(&mut self, output: &Path, format: MovieFormat, fps: f64) -> Result<(), Fault> {
-        // What a container refuses is the user's mistake; what happens while it is written may be the system's.
-        Movie::new(format, std::io::Cursor::new(Vec::new()), self.size[0], self.size[1], fps)?;
-        let [width, height] = self.size;
-        let mut fault: Option<Fault> = None;
-        let written = picture::prepare(output, |to| {
-            let mut shoot = || -> Result<(), Fault> {
-                let mut movie = Movie::new(format, &mut *to, width, height, fps)?;
-                self.all(&|_, _| false, &mut |frame| Ok(movie.push(&frame.rgb)?))?;
-                movie.finish()?;
-                Ok(())
-            };
-            shoot().map_err(|e| {
-                fault = Some(e);
-                std::io::Error::other("not finished")
-            })
-        });
-        if let Some(fault) = fault {
-            return Err(if self.tally.drawn == 0 && self.stop.load(Ordering::Relaxed) {
-                "stopped before the first frame".into()
-            } else {
-                fault
-            });
-        }
-        Ok(written?.finish()?)
-    }
-
-    fn shoot_folder(&mut self, output: &Path) -> Result<(), Fault> {
-        let mut folder = FrameFolder::open(output)?;
-        let count = self.takes.iter().map(|t| t.animation.frames as usize).sum();
-        self.tally.surplus = folder.shorten(count)?;
-        let folder = std::sync::Mutex::new(folder);
-        let size = self.size;
-        let mut there = Vec::new();
-        let opened = || folder.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        there.extend((0..count).map(|index| opened().is_there(index)));
-        self.all(&|index, shows| opened().is_finished(index, shows), &mut |frame: &Frame| {
-            Ok(opened().push(frame.index, &frame.shows, size, &frame.rgb)?)
-        })?;
-        self.tally.changed = there.iter().filter(|t| **t).count() - self.tally.kept;
-        Ok(())
-    }
-
-    /// Draws all frames that are not finished, and writes each while the next is drawn.
-    fn all(
-        &mut self,
-        finished: &dyn Fn(usize, &str) -> bool,
-        write: &mut (dyn FnMut(&Frame) -> Result<(), Fault> + Send),
-    ) -> Result<(), Fault> {
-        let mut waiting: Option<Frame> = None;
-        let mut films: Vec<Film> = Vec::new();
-        let mut index = 0;
-        for take in self.takes {
-            let look = format!("{} {:?}", env!("CARGO_PKG_VERSION"), self.options);
-            let scenes = take.panels.iter().map(|p| (p.scene.fingerprint(), &p.overlay));
-            let looks: Vec<_> = scenes
-                .map(|(scene, overlay)| {
-                    scene.with_value(&look).with_value(&overlay.as_ref().map(Overlay::options))
-                })
-                .collect();
-            for i in 0..take.animation.frames as usize {
-                if self.stop.load(Ordering::Relaxed) {
-                    break;
-                }
-                let shows = |(panel, look): (&Panel, &terrell::scene::Fingerprint)| {
-                    look.with_value(&panel.cameras[i]).to_string()
-                };
-                let shows: Vec<_> = take.panels.iter().zip(&looks).map(shows).collect();
-                let shows = shows.join(" ");
-                if finished(index, &shows) {
-                    self.tally.kept += 1;
-                } else {
-                    let last = waiting.take();
-                    let (drawn, written) = rayon::join(
-                        || self.frame(take, i, &mut films),
-                        || {
-                            let start = Instant::now();
-                            last.as_ref().map_or(Ok(()), &mut *write).map(|()| start.elapsed())
-                        },
-                    );
-                    self.tally.encoding += written?;
-                    waiting = Some(Frame { index, shows, rgb: drawn? });
-                    self.tally.drawn += 1;
-                }
-                self.bar.inc(1);
-                index += 1;
-            }
-        }
-        if let Some(frame) = waiting {
-            let start = Instant::now();
-            write(&frame)?;
-            self.tally.encoding += start.elapsed();
-        }
-        Ok(())
-    }
-
-    /// Pixels of a frame, panels side by side.
-    fn frame(&mut self, take: &Take, i: usize, films: &mut Vec<Film>) -> Result<Vec<u8>, Fault> {
-        films.resize_with(take.panels.len(), || Film::new(0, 0));
-        let mut pictures = Vec::new();
-        for (panel, film) in take.panels.iter().zip(films) {
-            let Panel { scene, cameras, overlay } = panel;
-            let report = render_again(scene, &cameras[i], self.options, film, |_| ())?;
-            self.tally.pieces += report.pieces;
-            self.tally.mapping += report.subdivision;
-            self.tally.shading += report.shading;
-            let start = Instant::now();
-            let mut pixels = picture::pixels_srgb(film);
-            if let Some(overlay) = overlay {
-                let tolerance = self.options.tolerance;
-                let shot = Shot { scene, camera: &cameras[i], film, tolerance };
-                for note in overlay.draw(&mut pixels, &shot) {
-                    if !self.notes.contains(&note) {
-                        self.notes.push(note);
-                    }
-                }
-            }
-            pictures.push(pixels);
-            self.tally.coloring += start.elapsed();
-        }
-        if pictures.len() == 1 {
-            return Ok(pictures.swap_remove(0));
-        }
-        let row = 3 * self.size[0] as usize / pictures.len();
-        let line = |y: usize| pictures.iter().flat_map(move |p| &p[y * row..(y + 1) * row]);
-        Ok((0..self.size[1] as usize).flat_map(line).copied().collect())
-    }
 }
 
 /// What there is to report.

@@ -8,6 +8,7 @@ mod look;
 mod render;
 mod report;
 mod scenes;
+mod shooting;
 mod source;
 mod summary;
 mod transform;

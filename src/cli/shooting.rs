@@ -1,0 +1,198 @@
+use super::Fault;
+use indicatif::ProgressBar;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use terrell::drawing::{Overlay, Shot};
+use terrell::film::Film;
+use terrell::picture::{self, FrameFolder, Movie, MovieFormat};
+use terrell::render::{Options, render_again};
+use terrell::scene::{Animation, Camera, Scene};
+
+/// One scene seen by one camera a frame.
+pub struct Panel {
+    pub scene: Scene,
+    pub cameras: Vec<Camera>,
+    pub overlay: Option<Overlay>,
+}
+
+/// A scene on its way to frames: side by side what is to be seen side by side.
+pub struct Take {
+    pub panels: Vec<Panel>,
+    pub animation: Animation,
+}
+
+impl Take {
+    pub fn name(&self) -> &str {
+        &self.panels[0].scene.name
+    }
+
+    /// Of a whole frame.
+    pub fn size(&self) -> [u32; 2] {
+        let size = self.panels[0].scene.view.size;
+        [size[0] * self.panels.len() as u32, size[1]]
+    }
+}
+
+/// What it took.
+#[derive(Default)]
+pub struct Tally {
+    pub drawn: usize,
+    pub kept: usize,
+    pub changed: usize,
+    pub surplus: usize,
+    pub pieces: usize,
+    pub mapping: Duration,
+    pub shading: Duration,
+    pub coloring: Duration,
+    pub encoding: Duration,
+}
+
+/// A frame that waits to be written.
+struct Frame {
+    index: usize,
+    shows: String,
+    rgb: Vec<u8>,
+}
+
+/// Scenes on their way to a film.
+pub struct Shooting<'a> {
+    pub takes: &'a [Take],
+    pub options: &'a Options,
+    pub size: [u32; 2],
+    pub bar: ProgressBar,
+    pub stop: Arc<AtomicBool>,
+    pub tally: Tally,
+    pub notes: Vec<String>,
+}
+
+impl Shooting<'_> {
+    pub fn shoot_movie(&mut self, output: &Path, format: MovieFormat, fps: f64) -> Result<(), Fault> {
+        // What a container refuses is the user's mistake; what happens while it is written may be the system's.
+        Movie::new(format, std::io::Cursor::new(Vec::new()), self.size[0], self.size[1], fps)?;
+        let [width, height] = self.size;
+        let mut fault: Option<Fault> = None;
+        let written = picture::prepare(output, |to| {
+            let mut shoot = || -> Result<(), Fault> {
+                let mut movie = Movie::new(format, &mut *to, width, height, fps)?;
+                self.all(&|_, _| false, &mut |frame| Ok(movie.push(&frame.rgb)?))?;
+                movie.finish()?;
+                Ok(())
+            };
+            shoot().map_err(|e| {
+                fault = Some(e);
+                std::io::Error::other("not finished")
+            })
+        });
+        if let Some(fault) = fault {
+            return Err(if self.tally.drawn == 0 && self.stop.load(Ordering::Relaxed) {
+                "stopped before the first frame".into()
+            } else {
+                fault
+            });
+        }
+        Ok(written?.finish()?)
+    }
+
+    pub fn shoot_folder(&mut self, output: &Path) -> Result<(), Fault> {
+        let mut folder = FrameFolder::open(output)?;
+        let count = self.takes.iter().map(|t| t.animation.frames as usize).sum();
+        self.tally.surplus = folder.shorten(count)?;
+        let folder = std::sync::Mutex::new(folder);
+        let size = self.size;
+        let mut changed = 0;
+        let opened = || folder.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        self.all(&|index, shows| opened().is_finished(index, shows), &mut |frame: &Frame| {
+            changed += usize::from(opened().is_there(frame.index));
+            Ok(opened().push(frame.index, &frame.shows, size, &frame.rgb)?)
+        })?;
+        self.tally.changed = changed;
+        Ok(())
+    }
+
+    /// Draws all frames that are not finished, and writes each while the next is drawn.
+    fn all(
+        &mut self,
+        finished: &dyn Fn(usize, &str) -> bool,
+        write: &mut (dyn FnMut(&Frame) -> Result<(), Fault> + Send),
+    ) -> Result<(), Fault> {
+        let mut waiting: Option<Frame> = None;
+        let mut films: Vec<Film> = Vec::new();
+        let mut index = 0;
+        for take in self.takes {
+            let look = format!("{} {:?}", env!("CARGO_PKG_VERSION"), self.options);
+            let scenes = take.panels.iter().map(|p| (p.scene.fingerprint(), &p.overlay));
+            let looks: Vec<_> = scenes
+                .map(|(scene, overlay)| {
+                    scene.with_value(&look).with_value(&overlay.as_ref().map(Overlay::options))
+                })
+                .collect();
+            for i in 0..take.animation.frames as usize {
+                if self.stop.load(Ordering::Relaxed) {
+                    break;
+                }
+                let shows = |(panel, look): (&Panel, &terrell::scene::Fingerprint)| {
+                    look.with_value(&panel.cameras[i]).to_string()
+                };
+                let shows: Vec<_> = take.panels.iter().zip(&looks).map(shows).collect();
+                let shows = shows.join(" ");
+                if finished(index, &shows) {
+                    self.tally.kept += 1;
+                } else {
+                    let last = waiting.take();
+                    let (drawn, written) = rayon::join(
+                        || self.frame(take, i, &mut films),
+                        || {
+                            let start = Instant::now();
+                            last.as_ref().map_or(Ok(()), &mut *write).map(|()| start.elapsed())
+                        },
+                    );
+                    self.tally.encoding += written?;
+                    waiting = Some(Frame { index, shows, rgb: drawn? });
+                    self.tally.drawn += 1;
+                }
+                self.bar.inc(1);
+                index += 1;
+            }
+        }
+        if let Some(frame) = waiting {
+            let start = Instant::now();
+            write(&frame)?;
+            self.tally.encoding += start.elapsed();
+        }
+        Ok(())
+    }
+
+    /// Pixels of a frame, panels side by side.
+    fn frame(&mut self, take: &Take, i: usize, films: &mut Vec<Film>) -> Result<Vec<u8>, Fault> {
+        films.resize_with(take.panels.len(), || Film::new(0, 0));
+        let mut pictures = Vec::new();
+        for (panel, film) in take.panels.iter().zip(films) {
+            let Panel { scene, cameras, overlay } = panel;
+            let report = render_again(scene, &cameras[i], self.options, film, |_| ())?;
+            self.tally.pieces += report.pieces;
+            self.tally.mapping += report.subdivision;
+            self.tally.shading += report.shading;
+            let start = Instant::now();
+            let mut pixels = picture::pixels_srgb(film);
+            if let Some(overlay) = overlay {
+                let tolerance = self.options.tolerance;
+                let shot = Shot { scene, camera: &cameras[i], film, tolerance };
+                for note in overlay.draw(&mut pixels, &shot) {
+                    if !self.notes.contains(&note) {
+                        self.notes.push(note);
+                    }
+                }
+            }
+            pictures.push(pixels);
+            self.tally.coloring += start.elapsed();
+        }
+        if pictures.len() == 1 {
+            return Ok(pictures.swap_remove(0));
+        }
+        let row = 3 * self.size[0] as usize / pictures.len();
+        let line = |y: usize| pictures.iter().flat_map(move |p| &p[y * row..(y + 1) * row]);
+        Ok((0..self.size[1] as usize).flat_map(line).copied().collect())
+    }
+}
