@@ -30,10 +30,11 @@ const SCALE: [(f64, [f32; 3]); 9] = [
 ];
 
 impl Coloring {
-    /// Linear sRGB seen of a surface with the colour `own` under the Doppler factor `doppler`.
-    pub fn light(self, own: [f32; 3], doppler: f64) -> [f32; 3] {
+    /// Linear sRGB seen of a surface under the Doppler factor `doppler`; `own` gives its colour, if that matters.
+    #[inline]
+    pub fn light(self, own: impl FnOnce() -> [f32; 3], doppler: f64) -> [f32; 3] {
         match self {
-            Self::Geometry => own,
+            Self::Geometry => own(),
             Self::Doppler => false_color(doppler),
         }
     }
@@ -119,13 +120,13 @@ mod tests {
 
     #[test]
     fn blue_comes_towards_us_and_red_goes_away() {
-        let at = |d| Coloring::Doppler.light([0.0; 3], d);
+        let at = |d| Coloring::Doppler.light(|| [0.0; 3], d);
         assert_eq!(at(1.0), [0.9; 3]);
         assert!(at(2.0)[2] > 2.0 * at(2.0)[0]);
         assert!(at(0.5)[0] > 2.0 * at(0.5)[2]);
         assert_eq!(at(1e9), at(32.0));
         assert_eq!(at(1e-9), at(1.0 / 32.0));
-        assert_eq!(Coloring::Geometry.light([0.1, 0.2, 0.3], 7.0), [0.1, 0.2, 0.3]);
+        assert_eq!(Coloring::Geometry.light(|| [0.1, 0.2, 0.3], 7.0), [0.1, 0.2, 0.3]);
     }
 
     #[test]

@@ -242,7 +242,7 @@ fn object(
             let doppler_of = |v: u32| Some(doppler[v as usize]).filter(|d| d.is_finite()).unwrap_or(1.0);
             let colors = match &cut.paint {
                 _ if !own_colors => {
-                    let light = |(v, _): &(u32, u32)| coloring.light([0.0; 3], doppler_of(*v));
+                    let light = |(v, _): &(u32, u32)| coloring.light(|| [0.0; 3], doppler_of(*v));
                     group.corners.iter().map(light).collect()
                 }
                 Paint::Uniform(_) => Vec::new(),

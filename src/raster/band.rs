@@ -387,7 +387,7 @@ impl Band {
                         |dx, dy| sampling.towards(x, line, dx * spread, dy * spread).unwrap_or(direction);
                     [to(1.0, 0.0), to(0.0, 1.0)]
                 };
-                let own = seen.own_color(direction, rest.along, nearness, neighbours);
+                let own = || seen.own_color(direction, rest.along, nearness, neighbours);
                 let light = coloring.light(own, doppler);
                 let color = &mut rows.color[i];
                 *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
