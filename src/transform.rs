@@ -12,11 +12,14 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use terrell_geodesic::{Tetrad, TetradError};
 
+/// The usual tolerance, in diagonals of the body.
+pub const USUAL_TOLERANCE: f64 = 3e-4;
+
 /// How to transform.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Largest distance between what is written and what is seen, in the scene's lengths; none for a
-    /// thousandth of the greatest body's diagonal.
+    /// Largest distance between what is written and what is seen, in the scene's lengths; none for
+    /// [`USUAL_TOLERANCE`] of each body's own diagonal.
     pub tolerance: Option<f64>,
     /// The most triangles all bodies together may be cut into.
     pub most_pieces: usize,
@@ -45,7 +48,7 @@ pub enum Axes {
 /// What was done and what it took.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
-    /// The tolerance kept.
+    /// The tolerance kept; if each body had its own, the largest.
     pub tolerance: f64,
     /// Triangles of the meshes.
     pub triangles: usize,
@@ -90,13 +93,14 @@ pub fn transform(
     let observers: Vec<Observer> =
         moments.iter().map(|m| Observer::new(m, options.axes)).collect::<Result<_, _>>()?;
     let diagonal = |body: &Body| body.mesh.bounds().map_or(0.0, |(low, high)| (high - low).length());
-    let size = scene.bodies.iter().map(diagonal).fold(0.0, f64::max);
-    let usual = if size > 0.0 { 1e-3 * size } else { 1e-3 };
-    let tolerance = options.tolerance.unwrap_or(usual);
-    let mut report = Report { tolerance, ..Report::default() };
+    let mut report = Report::default();
     let mut objects = Vec::with_capacity(scene.bodies.len());
     for body in &scene.bodies {
         let left = options.most_pieces - report.pieces;
+        let size = diagonal(body);
+        let usual = if size > 0.0 { USUAL_TOLERANCE * size } else { USUAL_TOLERANCE };
+        let tolerance = options.tolerance.unwrap_or(usual);
+        report.tolerance = report.tolerance.max(tolerance);
         let seen: Vec<(Arc<Mesh>, ApparentMap)> = moments
             .iter()
             .zip(&observers)

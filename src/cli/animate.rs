@@ -3,14 +3,12 @@ use super::look::LookFlags;
 use super::report::{ReportFlags, check_target};
 use super::shooting::{Panel, Shooting, Take, Tally};
 use super::values::{number, range};
-use super::{Fault, summary};
+use super::{Fault, stop, summary};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use terrell::picture::MovieFormat;
 use terrell::render::Options;
@@ -110,14 +108,14 @@ impl Animate {
         }
         let output = self.output.clone().unwrap_or_else(|| format!("{}.mp4", takes[0].name()).into());
         let target = Target::of(&output)?;
-        self.report.check(&output)?;
+        let read: Vec<_> = takes.iter().flat_map(|t| &t.panels).flat_map(|p| p.scene.files.clone()).collect();
+        self.report.check(&output, &read)?;
         let fps = takes[0].animation.fps;
         let mut shooting = Shooting {
             takes: &takes,
             options: &options,
             size,
             bar: progress_bar(takes.iter().map(|t| t.animation.frames as usize).sum(), self.report.quiet),
-            stop: stopped_by_user()?,
             tally: Tally::default(),
             notes: Vec::new(),
         };
@@ -126,17 +124,16 @@ impl Animate {
             Target::Folder => shooting.shoot_folder(&output)?,
         }
         shooting.bar.finish_and_clear();
-        let Shooting { tally, stop, notes, .. } = shooting;
-        let stopped = stop.load(Ordering::Relaxed);
+        let Shooting { tally, notes, .. } = shooting;
+        let stopped = stop::is_asked();
         let whole = start.elapsed();
         let done =
             Done { takes: &takes, options: &options, output: &output, size, tally, whole, stopped, notes };
         let summary = done.summary();
-        self.report.finish(Vec::new(), &summary)?;
+        self.report.finish(Vec::new(), &read, &summary)?;
         self.report.tell(&done.line(), &summary)?;
         if stopped {
-            // As a shell says of what was ended by Ctrl-C.
-            std::process::exit(130);
+            std::process::exit(stop::STOPPED);
         }
         Ok(())
     }
@@ -205,18 +202,6 @@ fn progress_bar(frames: usize, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// Set by the first Ctrl-C; the second ends the program at once.
-fn stopped_by_user() -> Result<Arc<AtomicBool>, Fault> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = stop.clone();
-    ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    })?;
-    Ok(stop)
-}
-
 /// What there is to report.
 struct Done<'a> {
     takes: &'a [Take],
@@ -242,14 +227,15 @@ impl Done<'_> {
     }
 
     fn line(&self) -> String {
+        let frames = |count: usize| format!("{count} frame{}", if count == 1 { "" } else { "s" });
         let tally = &self.tally;
         let take = &self.takes[0];
         let panel = take.panels.last().expect("a take has a panel");
         let bodies = summary::bodies_in_words(&summary::gammas(&panel.scene, &panel.cameras[0]));
         let mut line = format!(
-            "{}: {} frames of {}x{} {}, {} a second, flat spacetime, {bodies}: apparent shading on the CPU, {:.1} ms a frame ({:.0} % of the work for writing)\n",
+            "{}: {} of {}x{} {}, {} a second, flat spacetime, {bodies}: apparent shading on the CPU, {:.1} ms a frame ({:.0} % of the work for writing)\n",
             self.output.display(),
-            tally.drawn,
+            frames(tally.drawn),
             self.size[0],
             self.size[1],
             panel.cameras[0].lens.projection(),
@@ -262,13 +248,13 @@ impl Done<'_> {
             note(format!("stopped: {} of {} frames are there", tally.drawn + tally.kept, self.frames()));
         }
         if tally.kept > 0 {
-            note(format!("{} frames were there already", tally.kept));
+            note(format!("{} there already", frames(tally.kept)));
         }
         if tally.changed > 0 {
-            note(format!("the scene has changed since: {} frames were drawn anew", tally.changed));
+            note(format!("the scene has changed since: {} drawn anew", frames(tally.changed)));
         }
         if tally.surplus > 0 {
-            note(format!("{} frames of a longer film were taken away", tally.surplus));
+            note(format!("{} of a longer film taken away", frames(tally.surplus)));
         }
         let scenes = self.takes.iter().flat_map(|t| t.panels.last()).flat_map(|p| &p.scene.notes);
         scenes.chain(&self.notes).for_each(|n| note(n.clone()));

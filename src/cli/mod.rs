@@ -10,6 +10,7 @@ mod report;
 mod scenes;
 mod shooting;
 mod source;
+mod stop;
 mod summary;
 mod transform;
 mod values;
@@ -63,6 +64,7 @@ pub(crate) fn run() -> ExitCode {
             return ExitCode::from(code);
         }
     };
+    stop::watch();
     let done = match cli.command {
         Command::Render(render) => render.run(),
         Command::Animate(animate) => animate.run(),

@@ -57,7 +57,7 @@ impl Render {
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
         Format::of(&output)?;
         check_target(&output)?;
-        self.report.check(&output)?;
+        self.report.check(&output, &scene.files)?;
         let overlay = self.drawing.overlay(&scene)?;
         drawing::check_format(&overlay, &output)?;
         let read = start.elapsed();
@@ -78,7 +78,7 @@ impl Render {
         let done =
             Done { scene: &scene, camera: &camera, options: &options, film: &film, report, output, times };
         let summary = done.summary();
-        self.report.finish(vec![picture], &summary)?;
+        self.report.finish(vec![picture], &scene.files, &summary)?;
         self.report.tell(&done.line(), &summary)
     }
 

@@ -21,11 +21,15 @@ impl ReportFlags {
         self.json.as_deref().filter(|path| *path != Path::new("-"))
     }
 
-    /// Before the work: whether output and JSON can be written.
-    pub fn check(&self, output: &Path) -> Result<(), Fault> {
+    /// Before the work: whether output and JSON can be written, and are none of what was read.
+    pub fn check(&self, output: &Path, read: &[PathBuf]) -> Result<(), Fault> {
+        check_not_read(output, read)?;
         if let Some(json) = self.json_file() {
             check_target(json)?;
-            if json == output {
+            check_not_read(json, read)?;
+            let in_folder = output.is_dir()
+                && json.canonicalize().is_ok_and(|j| output.canonicalize().is_ok_and(|o| j.starts_with(o)));
+            if json == output || in_folder {
                 return Err(both(json));
             }
         }
@@ -33,7 +37,8 @@ impl ReportFlags {
     }
 
     /// After it: gives files their names, the JSON's among them, all or none.
-    pub fn finish(&self, mut files: Vec<Pending>, summary: &Value) -> Result<(), Fault> {
+    pub fn finish(&self, mut files: Vec<Pending>, read: &[PathBuf], summary: &Value) -> Result<(), Fault> {
+        files.iter().try_for_each(|file| check_not_read(file.path(), read))?;
         if let Some(path) = self.json_file() {
             let json = picture::prepare(path, |to| writeln!(to, "{summary:#}"))?;
             let plain = json.path().is_file() || !json.path().exists();
@@ -60,6 +65,14 @@ impl ReportFlags {
 
 fn both(path: &Path) -> Fault {
     format!("{} cannot be both what is made and the JSON", path.display()).into()
+}
+
+fn check_not_read(path: &Path, read: &[PathBuf]) -> Result<(), Fault> {
+    let Ok(place) = path.canonicalize() else { return Ok(()) };
+    if read.iter().any(|other| other.canonicalize().is_ok_and(|other| other == place)) {
+        return Err(format!("{} is among what is read; write to another file", path.display()).into());
+    }
+    Ok(())
 }
 
 /// What cannot be written to is better known before the work than after.

@@ -1,8 +1,6 @@
-use super::Fault;
+use super::{Fault, stop};
 use indicatif::ProgressBar;
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use terrell::drawing::{Overlay, Shot};
 use terrell::film::Film;
@@ -62,7 +60,6 @@ pub struct Shooting<'a> {
     pub options: &'a Options,
     pub size: [u32; 2],
     pub bar: ProgressBar,
-    pub stop: Arc<AtomicBool>,
     pub tally: Tally,
     pub notes: Vec<String>,
 }
@@ -86,7 +83,7 @@ impl Shooting<'_> {
             })
         });
         if let Some(fault) = fault {
-            return Err(if self.tally.drawn == 0 && self.stop.load(Ordering::Relaxed) {
+            return Err(if self.tally.drawn == 0 && stop::is_asked() {
                 "stopped before the first frame".into()
             } else {
                 fault
@@ -129,7 +126,7 @@ impl Shooting<'_> {
                 })
                 .collect();
             for i in 0..take.animation.frames as usize {
-                if self.stop.load(Ordering::Relaxed) {
+                if stop::is_asked() {
                     break;
                 }
                 let shows = |(panel, look): (&Panel, &terrell::scene::Fingerprint)| {

@@ -3,7 +3,7 @@ use super::velocity::of_resting;
 use std::path::Path;
 use terrell::geodesic::Celerity;
 use terrell::scene::{
-    Scene, Speed, View, authored, builtin_scene, framed, import, is_mesh_file, parse_scene,
+    Scene, Speed, View, authored, builtin_scene, framed, import, is_mesh_file, parse_scene, read_plain,
 };
 
 /// SCENE on the command line: the name of a scene that ships, a TOML file, or a mesh.
@@ -32,7 +32,8 @@ fn read(source: &str, speed: Option<Speed>, lens: &dyn Fn(&mut View)) -> Result<
     let path = Path::new(source);
     let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     if is_toml {
-        let text = std::fs::read_to_string(path).map_err(|e| format!("{source}: {e}"))?;
+        let text = read_plain(path).and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other));
+        let text = text.map_err(|e| format!("{source}: {e}"))?;
         return with_speed(parse_scene(&text, path)?, speed);
     }
     if is_mesh_file(path) {
@@ -62,8 +63,15 @@ fn with_speed(mut scene: Scene, speed: Option<Speed>) -> Result<Scene, Fault> {
 
 /// The moment the flags ask for: a world time, or when a body appears abreast.
 pub fn set_moment(scene: &mut Scene, time: Option<f64>, when: Option<&str>) -> Result<(), Fault> {
-    if let Some(time) = time {
-        scene.view.set_time(time)?;
+    let path = scene.animation.as_ref().and_then(|a| a.path.as_ref());
+    match (time, path) {
+        (Some(time), Some(path)) => scene.view = path.view_at_time(&scene.view, time),
+        (None, Some(path)) if when.is_none() => {
+            scene.view = path.view(&scene.view, path.clock_range()[0]);
+            scene.notes.push("the camera is at the beginning of its path; --time says where else".into());
+        }
+        (Some(time), None) => scene.view.set_time(time)?,
+        (None, _) => {}
     }
     if let Some(body) = when {
         scene.view.nearest = Some(body.to_owned());

@@ -5,11 +5,11 @@ use super::values::{number, when};
 use super::{source, summary};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use terrell::export::{self, Format};
 use terrell::geodesic::Tetrad;
-use terrell::scene::{Camera, Scene};
+use terrell::scene::{Camera, Scene, View};
 use terrell::transform::{Axes, Options, Report, transform};
 
 /// The apparent shape of a scene, as a mesh for other programs
@@ -41,7 +41,7 @@ pub struct Transform {
     #[arg(long, value_name = "\"nearest BODY\"", value_parser = when, conflicts_with_all = ["time", "animation"])]
     when: Option<String>,
     /// Largest distance between the triangles and the exact shape, in the scene's lengths; cost grows as 1/tolerance
-    /// [default: a thousandth of the largest body]
+    /// [default: 3e-4 of each body]
     #[arg(long, value_name = "LENGTH", value_parser = number)]
     tolerance: Option<f64>,
     /// Axes of what is written
@@ -107,12 +107,7 @@ impl Transform {
             return Err(export::ExportError::Still(output).into());
         }
         check_target(&output)?;
-        self.report.check(&output)?;
-        let same =
-            |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
-        if same(&output, self.scene.as_ref()) {
-            return Err(format!("{} is what is read; write to another file", output.display()).into());
-        }
+        self.report.check(&output, &scene.files)?;
         let (observers, times) = self.observers(&scene, &camera)?;
         let options = Options {
             tolerance: self.tolerance,
@@ -124,15 +119,23 @@ impl Transform {
             ..Options::default()
         };
         let camera = Camera { observer: observers[0], ..camera };
+        let reading = start.elapsed();
         let (mut model, report) = transform(&scene, &camera, &observers, &times, &options)?;
-        let mut done =
-            Done { scene: &scene, camera: &camera, options: &options, report, output, files: Vec::new() };
+        let mut done = Done {
+            scene: &scene,
+            camera: &camera,
+            options: &options,
+            report,
+            output,
+            files: Vec::new(),
+            reading,
+        };
         model.extras = done.extras();
         let files = export::prepare(&model, &done.output)?;
         done.files = files.iter().rev().map(|file| file.path().to_owned()).collect();
         let whole = start.elapsed();
         let summary = done.summary(whole);
-        self.report.finish(files, &summary)?;
+        self.report.finish(files, &scene.files, &summary)?;
         self.report.tell(&done.line(times.len(), whole, model.eye.is_none()), &summary)
     }
 
@@ -161,12 +164,17 @@ impl Transform {
             return Ok((vec![camera.observer], vec![0.0]));
         };
         let steps = f64::from(self.frames - 1);
+        let path = scene.animation.as_ref().and_then(|a| a.path.as_ref());
         let moment = |i: u32| {
             let clock = first + (last - first) * f64::from(i) / steps;
-            let mut view = scene.view.clone();
-            view.event = camera.observer.later(clock - camera.observer.event().t()).event();
-            view.nearest = None;
-            view
+            match path {
+                Some(path) => path.view(&scene.view, clock),
+                None => View {
+                    event: camera.observer.later(clock - camera.observer.event().t()).event(),
+                    nearest: None,
+                    ..scene.view.clone()
+                },
+            }
         };
         let at = |i| Ok(Scene { view: moment(i), ..scene.clone() }.camera()?.observer);
         let observers: Result<Vec<_>, Fault> = (0..self.frames).map(at).collect();
@@ -182,12 +190,13 @@ struct Done<'a> {
     report: Report,
     output: PathBuf,
     files: Vec<PathBuf>,
+    reading: Duration,
 }
 
 impl Done<'_> {
     fn line(&self, frames: usize, whole: Duration, no_eye: bool) -> String {
         let bodies = summary::bodies_in_words(&summary::gammas(self.scene, self.camera));
-        let usual = if self.options.tolerance.is_none() { " (a thousandth of the largest body)" } else { "" };
+        let usual = if self.options.tolerance.is_none() { " (3e-4 of each body)" } else { "" };
         let frames = if frames > 1 { format!(", {frames} frames") } else { String::new() };
         let mut line = format!(
             "{}: flat spacetime, {bodies}{frames}: {} triangles cut into {} with {} vertices for {:.3e}{usual}, {:.0} ms\n",
@@ -243,8 +252,12 @@ impl Done<'_> {
             "pieces": self.report.pieces,
             "vertices": self.report.vertices,
             "doppler_range": self.report.doppler,
+            "threads": rayon::current_num_threads(),
+            "peak_memory_bytes": summary::peak_memory_bytes(),
             "seconds": {
+                "reading": self.reading.as_secs_f64(),
                 "mapping_and_cutting": self.report.subdivision.as_secs_f64(),
+                "writing": (whole.saturating_sub(self.reading + self.report.subdivision)).as_secs_f64(),
                 "whole": whole.as_secs_f64(),
             },
             "notes": self.scene.notes,

@@ -18,8 +18,16 @@ const LIST: &str = "frames.json";
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct List {
     terrell: String,
-    /// By name, what the frame shows.
-    frames: BTreeMap<String, String>,
+    /// By name.
+    frames: BTreeMap<String, Entry>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Entry {
+    /// What the frame shows.
+    shows: String,
+    /// How long the file is: what someone cut off is no frame any more.
+    bytes: u64,
 }
 
 /// Why frames cannot be written to a folder.
@@ -68,8 +76,9 @@ impl FrameFolder {
 
     /// Whether a frame is there and shows what `shows` stands for.
     pub fn is_finished(&self, index: usize, shows: &str) -> bool {
-        self.list.frames.get(&name(index)).is_some_and(|there| there == shows)
-            && self.folder.join(name(index)).is_file()
+        let file = self.folder.join(name(index)).metadata().ok().filter(|about| about.is_file());
+        let entry = self.list.frames.get(&name(index));
+        entry.zip(file).is_some_and(|(entry, file)| entry.shows == shows && entry.bytes == file.len())
     }
 
     /// Whether a frame is there, whatever it shows.
@@ -110,9 +119,13 @@ impl FrameFolder {
         rgb: &[u8],
     ) -> Result<(), FramesError> {
         let path = self.folder.join(name(index));
-        let frame = prepare(&path, |to| write_png_pixels(width, height, rgb, to))?;
+        let mut png = Vec::new();
+        let encoded = write_png_pixels(width, height, rgb, &mut png);
+        encoded.map_err(|source| WriteError::Io { path: path.clone(), source })?;
+        let frame = prepare(&path, |to| to.write_all(&png))?;
         // It is in the list before it has its name: a frame that is there is never of someone else.
-        self.list.frames.insert(name(index), shows.to_owned());
+        let entry = Entry { shows: shows.to_owned(), bytes: png.len() as u64 };
+        self.list.frames.insert(name(index), entry);
         if !path.exists() {
             self.save()?;
             frame.finish()?;
@@ -150,6 +163,8 @@ mod tests {
         let mut frames = FrameFolder::open(&path).unwrap();
         assert!((0..3).all(|i| frames.is_finished(i, &format!("scene {i}"))));
         assert!(!frames.is_finished(1, "another") && frames.is_there(1));
+        std::fs::write(path.join("frame_00000.png"), "cut off").unwrap();
+        assert!(!frames.is_finished(0, "scene 0"));
         assert!(!frames.is_finished(3, "scene 3") && !frames.is_there(3));
         std::fs::remove_file(path.join("frame_00001.png")).unwrap();
         assert!(!frames.is_finished(1, "scene 1"));

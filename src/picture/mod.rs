@@ -9,5 +9,5 @@ mod png;
 pub use exr::write_exr;
 pub use frames::{FrameFolder, FramesError};
 pub use movie::{Movie, MovieError, MovieFormat};
-pub use output::{Format, Pending, WriteError, prepare, prepare_picture, write};
+pub use output::{Format, Pending, WriteError, prepare, prepare_picture, remove_unfinished, write};
 pub use png::{pixels_srgb, write_png, write_png_pixels};

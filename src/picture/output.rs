@@ -2,6 +2,7 @@ use super::{write_exr, write_png};
 use crate::film::Film;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Picture formats we write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +48,39 @@ impl Format {
 pub struct Pending {
     path: PathBuf,
     /// None where the path is no plain file (a device, a pipe) and has been written to directly.
-    file: Option<tempfile::NamedTempFile>,
+    file: Option<(tempfile::NamedTempFile, Unfinished)>,
+}
+
+/// Temporary files there are now.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Takes away what is written but not finished: for a program that is about to end without more ado.
+pub fn remove_unfinished() {
+    for path in unfinished().drain(..) {
+        // There is no one left to tell.
+        let _ = std::fs::remove_file(path);
+    }
+}
+
+/// Known to be unfinished as long as it lives.
+#[derive(Debug)]
+struct Unfinished(PathBuf);
+
+impl Unfinished {
+    fn new(path: &Path) -> Self {
+        unfinished().push(path.to_owned());
+        Self(path.to_owned())
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        unfinished().retain(|path| *path != self.0);
+    }
 }
 
 fn io_error(path: &Path) -> impl Fn(std::io::Error) -> WriteError {
@@ -97,11 +130,12 @@ pub fn prepare(
     builder.permissions(everyone);
     // The temporary name would only puzzle.
     let mut file = builder.tempfile_in(folder).map_err(|e| fault(e.kind().into()))?;
+    let mark = Unfinished::new(file.path());
     fill(file.as_file_mut()).map_err(&fault)?;
     if let Some(there) = there {
         file.as_file().set_permissions(there.permissions()).map_err(&fault)?;
     }
-    Ok(Pending { path: target, file: Some(file) })
+    Ok(Pending { path: target, file: Some((file, mark)) })
 }
 
 /// The one name a file has: links followed, folders resolved.
@@ -132,7 +166,7 @@ impl Pending {
     pub fn finish(self) -> Result<(), WriteError> {
         match self.file {
             None => Ok(()),
-            Some(file) => file.persist(&self.path).map(drop).map_err(|e| io_error(&self.path)(e.error)),
+            Some((file, _)) => file.persist(&self.path).map(drop).map_err(|e| io_error(&self.path)(e.error)),
         }
     }
 }

@@ -1,5 +1,6 @@
 use super::{Body, Camera, CameraPath, Scene, View, ViewError};
 use crate::relativity::ApparentMap;
+use std::sync::Arc;
 use terrell_geodesic::{Celerity, Event, World};
 
 /// How a scene is filmed.
@@ -43,7 +44,9 @@ pub enum AnimationError {
     #[error("a camera path goes by the camera's clock; it cannot be paced by where a body appears")]
     PathByPosition,
     /// There is nothing to film.
-    #[error("nothing moves, so there is nothing to film; give a velocity, or a camera path")]
+    #[error(
+        "nothing moves, so there is nothing to film; give a velocity, a camera path, or a time from and to"
+    )]
     Still,
 }
 
@@ -56,13 +59,26 @@ pub const STANDARD_BETA: f64 = 1e-6;
 
 impl Animation {
     /// The usual film of a scene: its first moving body (its first body, if the camera moves) from where it
-    /// appears one picture's width before abreast to one behind, in 120 frames.
+    /// appears one picture's width before abreast to one behind; if nothing moves but within itself, the longest
+    /// clip once. In 120 frames.
     ///
     /// # Errors
     /// If nothing moves.
     pub fn usual(scene: &Scene) -> Result<Self, AnimationError> {
         let camera = scene.still_camera()?;
-        let body = scene.followed().ok_or(AnimationError::Still)?;
+        let Some(body) = scene.followed() else {
+            let clips = scene.bodies.iter().filter_map(|b| b.clip.as_ref());
+            let lengths =
+                clips.map(|clip| clip.period / clip.rate.abs()).filter(|t| t.is_finite() && *t > 0.0);
+            let longest = lengths.reduce(f64::max).ok_or(AnimationError::Still)?;
+            let start = scene.view.event.t();
+            return Ok(Self {
+                frames: 120,
+                fps: 30.0,
+                pace: Pace::Clock([start, start + longest]),
+                path: None,
+            });
+        };
         // What is as far away as the body when nearest fills the picture's width.
         let map = ApparentMap::new(&body.motion, &camera.observer);
         let at = map.see(body.centre()).position;
@@ -92,14 +108,15 @@ impl Animation {
         (0..self.frames).map(|i| self.camera(scene, scene, 1.0, i)).collect()
     }
 
-    /// The [standard](Scene::standard) film of the scene, and the camera of every frame: where bodies are at the
+    /// The same film in slow motion, as it was thought to look before 1905, and the camera of every frame: where bodies are at the
     /// same places, if frames go by the clock; where the body followed is seen at the same places, if they go by
     /// these.
     ///
     /// # Errors
     /// As [`cameras`](Self::cameras).
     pub fn standard(&self, scene: &Scene) -> Result<(Scene, Vec<Camera>), AnimationError> {
-        let (slow, factor) = scene.standard();
+        let fastest = self.path.as_ref().map_or(0.0, CameraPath::greatest_speed);
+        let (slow, factor) = scene.standard(fastest);
         let cameras =
             (0..self.frames).map(|i| self.camera(scene, &slow, factor, i)).collect::<Result<_, _>>()?;
         Ok((slow, cameras))
@@ -143,17 +160,21 @@ impl Scene {
     }
 
     /// The same scene in slow motion, as it was thought to look before 1905: all velocities smaller by the same
-    /// factor, so that the fastest is [`STANDARD_BETA`], and all times longer by it. That factor, too.
-    pub fn standard(&self) -> (Self, f64) {
+    /// factor, so that the fastest is [`STANDARD_BETA`], and all times longer by it. That factor, too. Of the fastest is
+    /// also a camera on a path, whose greatest speed is `path`.
+    fn standard(&self, path: f64) -> (Self, f64) {
         let mut slow = self.clone();
         let celerities = slow.bodies.iter().map(|b| &b.motion.celerity).chain([&slow.view.celerity]);
-        let fastest = celerities.map(|c| c.beta().length()).fold(0.0, f64::max);
+        let fastest = celerities.map(|c| c.beta().length()).fold(path, f64::max);
         if fastest == 0.0 {
             return (slow, 1.0);
         }
         let factor = STANDARD_BETA / fastest;
         for body in &mut slow.bodies {
             slow_down(&mut body.motion.celerity, &mut body.motion.origin, factor);
+            if let Some(clip) = &mut body.clip {
+                Arc::make_mut(clip).rate *= factor;
+            }
         }
         slow_down(&mut slow.view.celerity, &mut slow.view.event, factor);
         (slow, factor)

@@ -52,6 +52,7 @@ pub fn authored(name: &str, imported: Imported, celerity: Option<Celerity>, lens
             lamps: imported.lamps,
             view,
             animation: None,
+            files: imported.files,
             notes: imported.notes,
         },
     }
@@ -78,6 +79,7 @@ fn passing(
         lamps: imported.lamps,
         view,
         animation: None,
+        files: imported.files,
         notes: imported.notes,
     }
 }

@@ -25,7 +25,7 @@ pub use clip::{Between, Blend, Clip, Joint, Track};
 pub use file::{SceneError, parse_scene};
 pub use fingerprint::Fingerprint;
 pub use framing::{authored, framed};
-pub use import::{ImportError, Imported, Part, import, import_obj, is_mesh_file};
+pub use import::{ImportError, Imported, Part, import, import_obj, is_mesh_file, read_plain};
 pub use lamp::{Lamp, LampKind};
 pub use material::Material;
 pub use mesh::{Mesh, MeshError, Paint};
@@ -48,6 +48,8 @@ pub struct Scene {
     pub view: View,
     /// How it is filmed, if it says so.
     pub animation: Option<Animation>,
+    /// The files it was read from.
+    pub files: Vec<std::path::PathBuf>,
     /// What was passed over when reading, for people to read.
     pub notes: Vec<String>,
 }
@@ -78,7 +80,8 @@ pub struct TooFast {
 impl Scene {
     /// Bodies and a view, and nothing else.
     pub fn new(name: &str, bodies: Vec<Body>, view: View) -> Self {
-        Self { name: name.to_owned(), bodies, lamps: Vec::new(), view, animation: None, notes: Vec::new() }
+        let (lamps, files, notes) = (Vec::new(), Vec::new(), Vec::new());
+        Self { name: name.to_owned(), bodies, lamps, view, animation: None, files, notes }
     }
 
     /// The camera at the moment the view asks for.

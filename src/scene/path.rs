@@ -118,11 +118,33 @@ impl CameraPath {
         }
     }
 
+    /// The camera at a world time.
+    pub fn view_at_time(&self, view: &View, t: f64) -> View {
+        let i = self.stretch(t);
+        let (start, end) = (self.keys[i].time, self.keys[i + 1].time);
+        let part = (t - start) / (end - start);
+        // The clock's own unevenness within a stretch is undone by its inverse.
+        let mut clock = self.clock[i] + part * (self.clock[i + 1] - self.clock[i]);
+        for _ in 0..8 {
+            clock += (t - self.world_time(clock)) * (self.clock[i + 1] - self.clock[i]) / (end - start);
+        }
+        self.view(view, clock)
+    }
+
+    /// The greatest speed on the way, in units of that of light.
+    pub fn greatest_speed(&self) -> f64 {
+        let pairs = self.keys.windows(2).flat_map(|pair| {
+            let step = (pair[1].time - pair[0].time) / PIECES as f64;
+            (0..PIECES).map(move |k| pair[0].time + (k as f64 + 0.5) * step)
+        });
+        pairs.map(|t| self.velocity(t).length()).fold(0.0, f64::max)
+    }
+
     fn stretch(&self, t: f64) -> usize {
         self.keys.partition_point(|k| k.time <= t).clamp(1, self.keys.len() - 1) - 1
     }
 
-    /// The world time at which the camera's clock shows `clock`: Newton's method, dτ/dt = 1/γ.
+    /// The world time at which the camera's clock shows `clock`: dτ/dt = 1/γ, added up.
     fn world_time(&self, clock: f64) -> f64 {
         let i = self.clock.partition_point(|c| *c <= clock).clamp(1, self.clock.len() - 1) - 1;
         let (start, end) = (self.keys[i].time, self.keys[i + 1].time);
@@ -203,6 +225,8 @@ mod tests {
         let keys = [0.0, 1.0, 5.0, 10.0].map(|t| key(t, DVec3::X * (0.6 * t)));
         let path = CameraPath::new(keys.to_vec()).unwrap();
         assert!((path.clock_range()[1] - 8.0).abs() < 1e-12, "10/γ");
+        assert!((path.greatest_speed() - 0.6).abs() < 1e-12);
+        assert!((path.view_at_time(&View::default(), 7.3).event.t() - 7.3).abs() < 1e-9);
         for clock in [0.0, 0.3, 4.0, 7.9, 8.0] {
             let view = path.view(&View::default(), clock);
             assert!((view.event.t() - clock * 1.25).abs() < 1e-9);

@@ -13,7 +13,7 @@ use crate::relativity::Motion;
 use glam::{DAffine3, DQuat, DVec3};
 use source::{Source, VelocityKeys, explain, velocity_keys};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tables::{BodyTable, CameraTable, Color, MaterialTable, Scale, SceneFile, Vector};
 use terrell_geodesic::TetradError;
@@ -29,11 +29,11 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         let at = e.span().map(|s| s.start);
         source.fault(at, explain(e.message(), at.map_or("", |at| source.line_at(at))))
     })?;
-    let mut notes = Vec::new();
+    let (mut notes, mut files) = (Vec::new(), vec![path.to_owned()]);
     let mut meshes: BTreeMap<String, Vec<Part>> = BTreeMap::new();
     let mut bodies: Vec<Body> = Vec::new();
     for (index, table) in file.body.iter().enumerate() {
-        for body in read_body(&source, index, table, &file.material, &mut meshes, &mut notes)? {
+        for body in read_body(&source, index, table, &file.material, &mut meshes, (&mut notes, &mut files))? {
             if bodies.iter().any(|b| b.name == body.name) {
                 let message = format!("two bodies are called '{}'; give one another name", body.name);
                 return Err(source.at(&table.mesh, message));
@@ -56,7 +56,7 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         None => View::default(),
     };
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let mut scene = Scene { name, bodies, lamps: Vec::new(), view, animation: None, notes };
+    let mut scene = Scene { files, notes, ..Scene::new(&name, bodies, view) };
     if let Some(table) = &file.animation {
         scene.animation = Some(animation::read_animation(&source, table, &scene)?);
     }
@@ -151,11 +151,11 @@ fn read_body(
     table: &BodyTable,
     materials: &BTreeMap<String, MaterialTable>,
     meshes: &mut BTreeMap<String, Vec<Part>>,
-    notes: &mut Vec<String>,
+    (notes, files): (&mut Vec<String>, &mut Vec<PathBuf>),
 ) -> Result<Vec<Body>, SceneError> {
     let mesh_name = table.mesh.get_ref();
     if !meshes.contains_key(mesh_name) {
-        let parts = read_mesh(source, &table.mesh, notes)?;
+        let parts = read_mesh(source, &table.mesh, notes, files)?;
         meshes.insert(mesh_name.clone(), parts);
     }
     // The meshes themselves are shared with other bodies as long as they stay as they are.
@@ -224,6 +224,7 @@ fn read_mesh(
     source: &Source<'_>,
     word: &Spanned<String>,
     notes: &mut Vec<String>,
+    files: &mut Vec<PathBuf>,
 ) -> Result<Vec<Part>, SceneError> {
     let name = word.get_ref();
     if let Some(mesh) = builtin_mesh(name) {
@@ -243,6 +244,7 @@ fn read_mesh(
     }
     let imported = imported.settled();
     notes.extend(imported.notes);
+    files.extend(imported.files);
     Ok(imported.parts)
 }
 

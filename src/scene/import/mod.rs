@@ -7,6 +7,7 @@ mod picture;
 use super::{Body, Clip, Lamp, Material, Mesh, MeshError, View};
 use crate::relativity::Motion;
 use glam::{DAffine3, DVec3};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -19,6 +20,8 @@ pub struct Imported {
     pub view: Option<View>,
     /// The lamps in it.
     pub lamps: Vec<Lamp>,
+    /// The files that were read.
+    pub files: Vec<PathBuf>,
     /// What was passed over, for people to read.
     pub notes: Vec<String>,
 }
@@ -147,15 +150,30 @@ fn ending(path: &Path) -> String {
 /// # Errors
 /// If it cannot be read, is malformed, or holds nothing that can be drawn.
 pub fn import(path: &Path) -> Result<Imported, ImportError> {
+    let files = RefCell::new(Vec::new());
     let contents = |path: &Path| {
-        std::fs::read(path).map_err(|source| ImportError::Read { path: path.to_owned(), source })
+        files.borrow_mut().push(path.to_owned());
+        read_plain(path).map_err(|source| ImportError::Read { path: path.to_owned(), source })
     };
-    let imported = match ending(path).as_str() {
+    let mut imported = match ending(path).as_str() {
         "obj" => obj::parse(&contents(path)?, path, &contents)?,
         "gltf" | "glb" => gltf::parse(&contents(path)?, path, &contents)?,
         _ => return Err(ImportError::UnknownFormat(path.to_owned())),
     };
+    imported.files = files.into_inner();
     checked(imported, path)
+}
+
+/// The contents of a plain file: devices and pipes may never end.
+pub fn read_plain(path: &Path) -> std::io::Result<Vec<u8>> {
+    let about = std::fs::metadata(path)?;
+    if about.is_dir() {
+        return Err(std::io::Error::other("it is a folder"));
+    }
+    if !about.is_file() {
+        return Err(std::io::Error::other("it is no plain file"));
+    }
+    std::fs::read(path)
 }
 
 fn checked(imported: Imported, path: &Path) -> Result<Imported, ImportError> {

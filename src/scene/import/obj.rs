@@ -95,7 +95,11 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
             normals: if source.normals.len() / 3 == count { triples(&source.normals) } else { Vec::new() },
             ..Mesh::default()
         };
-        part.triangles = triangulated(&source.indices, &source.face_arities, &part);
+        let crossed;
+        (part.triangles, crossed) = triangulated(&source.indices, &source.face_arities, &part);
+        if crossed {
+            library.note("a polygon crosses itself: what it covers is a guess");
+        }
         let mut index = material.unwrap_or(plain);
         if painted {
             // Vertex colours stand for the material's own.
@@ -124,9 +128,9 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
 }
 
 /// Polygons as triangles: convex ones as fans, others by cutting ears off, so that what they leave open stays
-/// open. Points and lines (one corner, two) are no surface.
-fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> Vec<[u32; 3]> {
-    let mut out = Vec::new();
+/// open; and whether any crosses itself. Points and lines (one corner, two) are no surface.
+fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> (Vec<[u32; 3]>, bool) {
+    let (mut out, mut crossed) = (Vec::new(), false);
     let mut rest = indices;
     let all_triangles = corners.is_empty().then(|| std::iter::repeat_n(3, indices.len() / 3));
     let counts: Box<dyn Iterator<Item = usize>> = match all_triangles {
@@ -143,6 +147,7 @@ fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> Vec<[u32; 3]> 
                 Some(flat) => {
                     let mut ears: Vec<u32> = Vec::new();
                     earcut::Earcut::new().earcut(flat.iter().map(|p| p.to_array()), &[], &mut ears);
+                    crossed |= is_crossed(&flat, &ears);
                     out.extend(ears.chunks_exact(3).map(|t| {
                         let [p, q, r] = [0, 1, 2].map(|i| flat[t[i] as usize]);
                         let left = (q - p).perp_dot(r - p) >= 0.0;
@@ -154,7 +159,7 @@ fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> Vec<[u32; 3]> 
             _ => {}
         }
     }
-    out
+    (out, crossed)
 }
 
 /// A polygon's corners in its own plane, counter-clockwise, if it turns both ways there.
@@ -180,6 +185,18 @@ fn concave(polygon: &[u32], mesh: &Mesh) -> Option<Vec<DVec2>> {
         .sum();
     let is_concave = (0..flat.len()).any(turns) || around > 7.0;
     (is_concave && !(flat.len() > MOST_TANGLED && is_tangled(&flat, around))).then_some(flat)
+}
+
+/// Whether triangles cover another area than their outline goes round: it crosses itself.
+fn is_crossed(outline: &[DVec2], triangles: &[u32]) -> bool {
+    let corner = |i: usize| outline[i % outline.len()];
+    let around: f64 = (0..outline.len()).map(|i| 0.5 * corner(i).perp_dot(corner(i + 1))).sum();
+    let area = |t: &[u32]| {
+        let [a, b, c] = [0, 1, 2].map(|i| outline[t[i] as usize]);
+        0.5 * (b - a).perp_dot(c - a).abs()
+    };
+    let covered: f64 = triangles.chunks_exact(3).map(area).sum();
+    (covered - around.abs()).abs() > 1e-6 * covered.max(around.abs())
 }
 
 /// Corners of a polygon that crosses itself, beyond which it becomes a fan: cutting the ears off such a one takes
@@ -330,7 +347,11 @@ fn cleaned(text: &str) -> (String, bool) {
 fn without_odd_colors(text: &str) -> String {
     let good = |line: &&str| {
         let mut words = line.split_whitespace();
-        let is_color = words.next().is_some_and(|keyword| matches!(keyword, "Ka" | "Kd" | "Ks" | "Ke"));
+        let keyword = words.next().unwrap_or_default();
+        if keyword.starts_with("map_") || keyword.starts_with("norm") || keyword.starts_with("bump") {
+            return words.next().is_some();
+        }
+        let is_color = matches!(keyword, "Ka" | "Kd" | "Ks" | "Ke");
         !is_color || words.take(3).filter(|word| word.parse::<f64>().is_ok()).count() == 3
     };
     text.lines().filter(good).flat_map(|line| [line, "\n"]).collect()
@@ -461,6 +482,13 @@ mod tests {
                 .sum();
             assert!((covered - expected.abs()).abs() < 1e-12, "{text}: nothing twice, {covered}");
         }
+    }
+
+    #[test]
+    fn polygons_that_cross_themselves_are_told_of() {
+        let bow = "v 0 0 0\nv 2 1 0\nv 2 0 0\nv 0 2 0\nf 1 2 3 4\n";
+        let notes = import_obj(bow, "", "b.obj").unwrap().notes;
+        assert!(notes.iter().any(|n| n.contains("crosses itself")), "{notes:?}");
     }
 
     #[test]

@@ -42,6 +42,9 @@ impl Extras {
         };
         let along = vector("direction")?;
         let direction = along.unwrap_or(DVec3::X);
+        if direction == DVec3::ZERO {
+            return Err("direction has length zero".into());
+        }
         let mut found = Vec::new();
         if let Some(beta) = vector("velocity")? {
             found.push(("velocity", Celerity::from_beta(beta)));
@@ -103,6 +106,7 @@ mod tests {
             r#"{"velocity": [0.1, 0, 0], "direction": [1, 0, 0]}"#,
             r#"{"direction": [1, 0, 0]}"#,
             r#"{"gamma": 0.5}"#,
+            r#"{"beta": 0.5, "direction": [0, 0, 0]}"#,
             r#"{"time": "now"}"#,
         ] {
             assert!(read(bad, false).is_err(), "{bad}");

@@ -87,8 +87,9 @@ impl Reader {
         match file.default_scene().or_else(|| file.scenes().next()) {
             Some(scene) => {
                 if file.scenes().len() > 1 {
-                    let name = scene.name().map_or_else(|| scene.index().to_string(), |n| format!("'{n}'"));
-                    self.note(&format!("of {} scenes, {name} is shown", file.scenes().len()));
+                    let name = scene.name().map_or(String::new(), |n| format!(" ('{n}')"));
+                    let number = scene.index() + 1;
+                    self.note(&format!("of {} scenes number {number}{name} is shown", file.scenes().len()));
                 }
                 let mut waiting: Vec<_> = scene.nodes().map(|node| (node, still.clone())).collect();
                 waiting.reverse();
@@ -139,6 +140,9 @@ impl Reader {
             }
             if is_still {
                 still = place.part;
+            }
+            if node.mesh().is_some_and(|mesh| mesh.primitives().any(|p| p.morph_targets().len() > 0)) {
+                self.note("morph targets are left out");
             }
             if node.skin().is_some() {
                 self.note("skins are not animated: the mesh is drawn as it was bound");
@@ -353,7 +357,13 @@ impl Reader {
         if !self.colored {
             self.note("the mesh has no colours; painted in clay by the direction its faces look");
         }
-        Ok(Imported { parts: self.parts, view: self.view, lamps: self.lamps, notes: self.notes })
+        Ok(Imported {
+            parts: self.parts,
+            view: self.view,
+            lamps: self.lamps,
+            notes: self.notes,
+            ..Imported::default()
+        })
     }
 
     fn note(&mut self, note: &str) {
