@@ -173,3 +173,78 @@ fn stopped_by_its_user_it_leaves_whole_frames() {
         "frames and their list"
     );
 }
+
+/// On a fast path the standard is at the same places, and sees nothing aberrated: as a camera at rest there.
+#[test]
+fn the_standard_of_a_camera_path_is_slow() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let scene = |key: &str| {
+        format!(
+            "[camera]\nsize = [64, 48]\n[[body]]\nmesh = \"cube\"\nposition = [0, 6, 0]\n[animation]\nframes = 3\n
+            [[animation.key]]\ntime = 0\nposition = [-1, 0, 0]\nforward = [0, 1, 0]\n
+            [[animation.key]]\n{key}\nforward = [0, 1, 0]\n"
+        )
+    };
+    std::fs::write(here.join("fast.toml"), scene("time = 2.5\nposition = [1, 0, 0]")).unwrap();
+    good(&["animate", "fast.toml", "--beside-standard", "-o", "both/"], here);
+    good(&["animate", "fast.toml", "-o", "fast/"], here);
+    std::fs::write(here.join("slow.toml"), scene("time = 2500000\nposition = [1, 0, 0]")).unwrap();
+    good(&["animate", "slow.toml", "-o", "slow/"], here);
+    for i in 0..3 {
+        let frame = |folder: &str| pixels(here.join(format!("{folder}/frame_{i:05}.png")));
+        let half = |x| image::imageops::crop_imm(&frame("both"), x, 0, 64, 48).to_image();
+        assert_eq!(half(0), frame("slow"), "{i}");
+        assert_eq!(half(64), frame("fast"), "{i}");
+        assert_ne!(half(0), half(64), "{i}");
+    }
+    // One picture is from the path, too.
+    good(&["render", "fast.toml", "--time", "2.5", "-o", "end.png"], here);
+    assert_eq!(pixels(here.join("end.png")), pixels(here.join("fast/frame_00002.png")));
+}
+
+#[test]
+fn nothing_that_was_read_is_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbImage::from_pixel(2, 2, image::Rgb([200, 10, 10]))
+        .write_to(&mut png, image::ImageFormat::Png)
+        .unwrap();
+    let files: [(&str, &[u8]); 4] = [
+        ("in.toml", b"[[body]]\nmesh = \"a.obj\"\nvelocity = [0.5, 0, 0]\nposition = [0, 3, 0]\n"),
+        (
+            "a.obj",
+            b"mtllib b.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n",
+        ),
+        ("b.mtl", b"newmtl m\nKd 1 1 1\nmap_Kd tex.png\n"),
+        ("tex.png", png.get_ref()),
+    ];
+    for (name, contents) in files {
+        std::fs::write(here.join(name), contents).unwrap();
+    }
+    for words in [
+        vec!["render", "in.toml", "-o", "x.png", "--json", "in.toml"],
+        vec!["render", "a.obj", "--beta", "0.5", "-o", "tex.png"],
+        vec!["render", "in.toml", "-o", "./tex.png"],
+        vec!["animate", "in.toml", "--frames", "2", "-o", "x.mp4", "--json", "a.obj"],
+        vec!["transform", "a.obj", "--beta", "0.5", "-o", "b.obj"],
+        vec!["transform", "a.obj", "-o", "x.obj", "--json", "b.mtl"],
+    ] {
+        assert!(bad(&words, here).contains("read"), "{words:?}");
+    }
+    assert!(
+        bad(&["animate", "cube", "--frames", "2", "-o", "q.mp4", "--json", "q.mp4"], here).contains("both")
+    );
+    for (name, contents) in files {
+        assert_eq!(std::fs::read(here.join(name)).unwrap(), contents, "{name}");
+    }
+    assert_eq!(std::fs::read_dir(here).unwrap().count(), files.len());
+    // What never ends is no mesh.
+    #[cfg(unix)]
+    {
+        std::fs::write(here.join("b.mtl"), "newmtl m\nKd 1 1 1\nmap_Kd /dev/zero\n").unwrap();
+        let said = good(&["render", "a.obj", "--size", "16x12", "-o", "x.png"], here);
+        assert!(said.contains("no plain file"), "{said}");
+    }
+}

@@ -110,13 +110,8 @@ fn the_painter_differs_from_the_z_buffer_at_outlines_and_by_order() {
                         scene.name
                     );
                 }
-                // Where the cube is thinner along the sight than its faces reach, its back is painted over its front.
-                let most = match (scene.name.as_str(), beta > 0.9) {
-                    ("cube", false) => 0.5,
-                    ("cube", true) => 16.0,
-                    ("lattice", true) => 10.0,
-                    _ => 5.0,
-                };
+                // The gate cut for 0.5c and more has too many pairs in one place: there centroids decide.
+                let most = if scene.name == "gate" && beta > 0.0 { 1.5 } else { 0.2 };
                 assert!(share(inner.len()) < most, "{} β {beta} {projection}", scene.name);
             }
         }

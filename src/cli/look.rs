@@ -67,7 +67,7 @@ pub(super) enum ColorFlag {
 enum RasterFlag {
     /// A z-buffer: exact
     Cpu,
-    /// Triangles painted back to front by tiny-skia: wrong where they pass through each other or differ much in size
+    /// Triangles painted back to front by tiny-skia: wrong where they pass through each other
     Skia,
 }
 

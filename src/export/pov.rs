@@ -21,16 +21,29 @@ pub(super) fn encode(model: &Model, path: &Path) -> Vec<File> {
         );
     }
     out.push_str("#version 3.7;\nglobal_settings { assumed_gamma 1.0 }\nbackground { color rgb 0 }\n");
+    let scale = scale_of(model);
+    if scale != 1.0 {
+        let _ = writeln!(out, "// all lengths times {scale:e}, as POV-Ray sees nothing beyond 1e7");
+    }
     if let Some(eye) = &model.eye {
-        look(&mut out, eye);
+        look(&mut out, eye, scale);
     }
     for (name, surface) in model.surfaces() {
         let _ = writeln!(out, "// {}", name_of(name));
-        mesh(&mut out, surface, &mut pictures, path);
+        mesh(&mut out, surface, scale, &mut pictures, path);
     }
     let mut files = vec![File { path: path.to_owned(), contents: out.into_bytes() }];
     files.extend(pictures.files(path));
     files
+}
+
+/// What brings everything to where POV-Ray sees it; a picture stays the same.
+fn scale_of(model: &Model) -> f64 {
+    const FAR: f64 = 1e5;
+    let (low, high) = model.bounds();
+    let eye = model.eye.as_ref().map_or(0.0, |eye| eye.positions[0].abs().max_element());
+    let farthest = low.abs().max(high.abs()).max_element().max(eye);
+    if farthest > FAR { 10f64.powf((FAR / farthest).log10().floor()) } else { 1.0 }
 }
 
 fn triple(v: [f64; 3]) -> String {
@@ -42,13 +55,13 @@ fn rgb(v: [f32; 3]) -> String {
 }
 
 /// Explicit vectors: that POV-Ray's usual axes are left-handed has no say then.
-fn look(out: &mut String, eye: &Eye) {
+fn look(out: &mut String, eye: &Eye, scale: f64) {
     let [right, up, forward] = eye.axes;
     let aspect = f64::from(eye.size[0]) / f64::from(eye.size[1]);
     let _ = writeln!(
         out,
         "camera {{\n  perspective\n  location {}\n  right {}\n  up {}\n  direction {}\n}}",
-        triple(eye.positions[0].to_array()),
+        triple((eye.positions[0] * scale).to_array()),
         triple((right * aspect).to_array()),
         triple(up.to_array()),
         triple((forward * (0.5 / (0.5 * eye.field).tan())).to_array())
@@ -63,11 +76,11 @@ fn list(out: &mut String, keyword: &str, values: impl ExactSizeIterator<Item = S
     out.push_str("\n  }\n");
 }
 
-fn mesh(out: &mut String, surface: &Surface, pictures: &mut Pictures, path: &Path) {
+fn mesh(out: &mut String, surface: &Surface, scale: f64, pictures: &mut Pictures, path: &Path) {
     let frame = surface.first();
     let textured = surface.material.base_texture.as_ref();
     out.push_str("mesh2 {\n");
-    list(out, "vertex_vectors", frame.positions.iter().map(|p| triple(p.to_array())));
+    list(out, "vertex_vectors", frame.positions.iter().map(|p| triple((*p * scale).to_array())));
     list(out, "normal_vectors", frame.normals.iter().map(|n| triple(n.to_array().map(f64::from))));
     let placed = surface.placed_uv();
     if textured.is_some() {
@@ -140,7 +153,7 @@ mod tests {
         let axes = [DVec3::X, DVec3::Z, DVec3::Y];
         let eye = Eye { positions: vec![DVec3::ONE], axes, field: 90f64.to_radians(), size: [200, 100] };
         let mut out = String::new();
-        look(&mut out, &eye);
+        look(&mut out, &eye, 1.0);
         assert!(out.contains("right <2,0,0>") && out.contains("up <0,0,1>"), "{out}");
         // Half the height at half the height's distance: 45° above and below.
         let direction = out.split("direction <0,").nth(1).unwrap();

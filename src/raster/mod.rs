@@ -8,6 +8,7 @@
 mod band;
 mod bins;
 mod bounds;
+mod order;
 mod painter;
 mod polygon;
 mod triangle;

@@ -1,10 +1,12 @@
 use super::bins::Bins;
 use super::bounds::Bounder;
+use super::order::{Waiting, back_to_front};
 use super::polygon::{BEYOND, Polygon};
-use super::triangle::Planes;
+use super::triangle::{Planes, Surface};
 use super::{Drawable, Samples, each_band};
 use crate::color::Coloring;
 use crate::film::Film;
+use crate::relativity::RestSky;
 use crate::scene::Lens;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -25,10 +27,10 @@ pub struct TooManyToPaint(pub usize);
 /// shows is the exact surface of the triangle whose number is there. Only which triangle a pixel sees is decided
 /// in another way.
 ///
-/// Triangles are painted in the order of their centroids' apparent distances: of the keys tried (nearest corner,
-/// farthest, the middle of both) the least wrong on the whole. It is wrong where triangles pass through each other
-/// or overlap in a cycle, and where one reaches much farther along the line of sight than what it overlaps, so that
-/// the nearer one has the farther centroid.
+/// Of two triangles that overlap the one farther away, where they overlap, is painted first; all others in the order of
+/// their centroids' apparent distances. It is wrong where triangles pass through each other or overlap in a cycle;
+/// and where there are so many in one place that pairs cannot be compared (some millions), so that only centroids are
+/// left, also where one reaches much farther along the line of sight than what it overlaps.
 ///
 /// # Errors
 /// If there are more than [`MOST_PAINTED`] triangles.
@@ -77,8 +79,6 @@ fn check_count(count: usize) -> Result<(), TooManyToPaint> {
 /// A triangle ready to be painted.
 struct Image {
     number: u32,
-    /// What it is painted in the order of, falling.
-    depth: f64,
     path: Path,
     rule: FillRule,
 }
@@ -86,24 +86,30 @@ struct Image {
 /// All triangles that have an image, back to front.
 fn images(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples) -> Vec<Image> {
     let bounder = Bounder::new(lens, samples.range());
+    let skies: Vec<RestSky> = bodies.iter().map(|b| b.map.rest_sky()).collect();
     let mut images = Vec::new();
     let mut first = 0;
-    for body in bodies {
+    for (body, sky) in bodies.iter().zip(&skies) {
         let triangles = body.seen.triangles.par_iter().enumerate().with_min_len(1024);
         let image = |(i, triangle): (usize, &crate::apparent::ApparentTriangle)| {
             let corners = triangle.corners.map(|v| body.seen.vertices[v as usize]);
             let screen = corners.map(|v| bounder.project(v));
-            bounder.bounds(screen, || corners).iter().flatten().next()?;
+            let rects = bounder.bounds(screen, || corners);
+            rects.iter().flatten().next()?;
             // What is seen edge-on has no surface to look up.
-            Planes::new(corners)?;
+            let planes = Planes::new(corners)?;
             let (path, rule) = path(lens, &Polygon::new(lens, corners)?)?;
-            Some(Image { number: first + i as u32, depth: depth(corners), path, rule })
+            let rest = body.mesh.corners(triangle.face as usize).map(|v| body.map.offset_rest(v));
+            let surface = Surface::new(body.map, sky, rest, corners, &planes);
+            let depth = depth(corners);
+            let waiting = Waiting { corners, planes, surface, sky, rects, depth };
+            Some((waiting, Some(Image { number: first + i as u32, path, rule })))
         };
         images.par_extend(triangles.filter_map(image));
         first += body.seen.triangles.len() as u32;
     }
-    images.par_sort_by(|a, b| b.depth.total_cmp(&a.depth));
-    images
+    let (waiting, mut images): (Vec<_>, Vec<_>) = images.into_iter().unzip();
+    back_to_front(&waiting).into_iter().filter_map(|i| images[i as usize].take()).collect()
 }
 
 /// Apparent distance of the centroid.
@@ -153,7 +159,7 @@ mod tests {
         let path = PathBuilder::from_rect(Rect::from_ltrb(0.0, 0.0, 3.0, 3.0).unwrap());
         let last = MOST_PAINTED as u32 - 1;
         for number in (0..last).step_by(65_521).chain([1, 254, 255, 256, 65_535, 65_536, last]) {
-            let image = Image { number, depth: 1.0, path: path.clone(), rule: FillRule::Winding };
+            let image = Image { number, path: path.clone(), rule: FillRule::Winding };
             image.fill(&mut pixmap, DVec2::ZERO);
             assert!(pixmap.data().chunks(4).all(|rgba| number_of(rgba) == Some(number)), "{number}");
         }
