@@ -83,8 +83,9 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// "error:", in red on a terminal whose user has not asked for none (NO_COLOR).
+/// "error:", in red on a terminal that has colours and whose user has not asked for none (NO_COLOR).
 fn error_mark() -> &'static str {
-    let colored = std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
+    let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    let colored = !dumb && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
     if colored && std::io::stderr().is_terminal() { "\x1b[1;31merror:\x1b[0m" } else { "error:" }
 }

@@ -8,6 +8,10 @@ use terrell::picture::{self, FrameFolder, Movie, MovieFormat};
 use terrell::render::{Options, render_again};
 use terrell::scene::{Animation, Camera, Scene};
 
+/// Columns between pictures that stand side by side, and their grey.
+const GAP: u32 = 2;
+const GAP_COLOR: u8 = 96;
+
 /// One scene seen by one camera a frame.
 pub struct Panel {
     pub scene: Scene,
@@ -29,7 +33,8 @@ impl Take {
     /// Of a whole frame.
     pub fn size(&self) -> [u32; 2] {
         let size = self.panels[0].scene.view.size;
-        [size[0] * self.panels.len() as u32, size[1]]
+        let panels = self.panels.len() as u32;
+        [size[0] * panels + GAP * (panels - 1), size[1]]
     }
 }
 
@@ -165,6 +170,7 @@ impl Shooting<'_> {
     fn frame(&mut self, take: &Take, i: usize, films: &mut Vec<Film>) -> Result<Vec<u8>, Fault> {
         films.resize_with(take.panels.len(), || Film::new(0, 0));
         let mut pictures = Vec::new();
+        let film_width = take.panels[0].scene.view.size[0] as usize;
         for (panel, film) in take.panels.iter().zip(films) {
             let Panel { scene, cameras, overlay } = panel;
             let report = render_again(scene, &cameras[i], self.options, film, |_| ())?;
@@ -188,8 +194,17 @@ impl Shooting<'_> {
         if pictures.len() == 1 {
             return Ok(pictures.swap_remove(0));
         }
-        let row = 3 * self.size[0] as usize / pictures.len();
-        let line = |y: usize| pictures.iter().flat_map(move |p| &p[y * row..(y + 1) * row]);
-        Ok((0..self.size[1] as usize).flat_map(line).copied().collect())
+        let row = 3 * film_width;
+        let gap = [GAP_COLOR; 3 * GAP as usize];
+        let mut frame = Vec::with_capacity(3 * self.size[0] as usize * self.size[1] as usize);
+        for y in 0..self.size[1] as usize {
+            for (k, picture) in pictures.iter().enumerate() {
+                if k > 0 {
+                    frame.extend(gap);
+                }
+                frame.extend_from_slice(&picture[y * row..(y + 1) * row]);
+            }
+        }
+        Ok(frame)
     }
 }

@@ -159,7 +159,10 @@ pub(in crate::scene) fn did_you_mean<'a>(
 ) -> String {
     match nearest(word, names.clone()) {
         Some(name) => format!("did you mean '{name}'?"),
-        None => format!("known: {}", names.into_iter().collect::<Vec<_>>().join(", ")),
+        None => match names.into_iter().collect::<Vec<_>>().join(", ") {
+            none if none.is_empty() => "there is none".to_owned(),
+            known => format!("known: {known}"),
+        },
     }
 }
 

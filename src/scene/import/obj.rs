@@ -114,6 +114,11 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         }
     }
     mesh.materials = made;
+    let names: HashSet<&str> = materials.iter().map(|m| m.name.as_str()).collect();
+    let unknown = used_materials(text).find(|name| !names.contains(name));
+    if let Some(name) = unknown.filter(|_| !materials.is_empty()) {
+        library.note(&format!("there is no material '{name}' in the library; what uses it is grey"));
+    }
     let mut notes = library.notes;
     if half_colored {
         notes.push("only some vertices have colours; they are left out".into());
@@ -125,6 +130,11 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     }
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(Imported { parts: vec![Part::still(name, mesh)], notes, ..Imported::default() })
+}
+
+/// The names of the materials that faces ask for.
+fn used_materials(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter_map(|line| line.trim_start().strip_prefix("usemtl ")).map(str::trim)
 }
 
 /// Polygons as triangles: convex ones as fans, others by cutting ears off, so that what they leave open stays
@@ -414,6 +424,8 @@ mod tests {
     fn triangles_are_numbered_as_in_the_file_and_coloured_by_their_material() {
         let mesh = import_obj(SQUARE, "newmtl red\nKd 0.7 0.1 0.2\n", "square.obj").unwrap().into_mesh();
         assert_eq!(mesh.triangles.len(), 3);
+        let notes = import_obj(SQUARE, "newmtl red\nKd 0.7 0.1 0.2\n", "square.obj").unwrap().notes;
+        assert!(notes.iter().any(|n| n.contains("'none'")), "{notes:?}");
         let color = |t: usize| mesh.material_of(t).unwrap().base_color;
         assert_eq!(color(0), [0.7, 0.1, 0.2]);
         assert_eq!(color(1), color(0));
