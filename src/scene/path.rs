@@ -90,7 +90,12 @@ impl CameraPath {
     /// and after.
     pub fn view(&self, view: &View, clock: f64) -> View {
         let [first, last] = self.clock_range();
-        let t = self.world_time(clock.clamp(first, last));
+        self.view_at_time(view, self.world_time(clock.clamp(first, last)))
+    }
+
+    /// The camera at a world time; as at its ends before and after.
+    pub fn view_at_time(&self, view: &View, t: f64) -> View {
+        let t = t.clamp(self.keys[0].time, self.keys[self.keys.len() - 1].time);
         let i = self.stretch(t);
         let (a, b) = (&self.keys[i], &self.keys[i + 1]);
         let part = (t - a.time) / (b.time - a.time);
@@ -116,19 +121,6 @@ impl CameraPath {
             nearest: None,
             ..view.clone()
         }
-    }
-
-    /// The camera at a world time.
-    pub fn view_at_time(&self, view: &View, t: f64) -> View {
-        let i = self.stretch(t);
-        let (start, end) = (self.keys[i].time, self.keys[i + 1].time);
-        let part = (t - start) / (end - start);
-        // The clock's own unevenness within a stretch is undone by its inverse.
-        let mut clock = self.clock[i] + part * (self.clock[i + 1] - self.clock[i]);
-        for _ in 0..8 {
-            clock += (t - self.world_time(clock)) * (self.clock[i + 1] - self.clock[i]) / (end - start);
-        }
-        self.view(view, clock)
     }
 
     /// The greatest speed on the way, in units of that of light.
