@@ -66,11 +66,8 @@ impl CameraPath {
         }
         let mut path = Self { clock: vec![keys[0].time], keys };
         for i in 0..path.keys.len() - 1 {
-            let (start, end) = (path.keys[i].time, path.keys[i + 1].time);
-            let step = (end - start) / PIECES as f64;
             let mut elapsed = 0.0;
-            for k in 0..PIECES {
-                let speed = path.velocity(start + (k as f64 + 0.5) * step).length();
+            for (_, step, speed) in path.pieces(i) {
                 if speed >= FASTEST || speed.is_nan() {
                     return Err(PathError::TooFast(i, speed));
                 }
@@ -125,11 +122,16 @@ impl CameraPath {
 
     /// The greatest speed on the way, in units of that of light.
     pub fn greatest_speed(&self) -> f64 {
-        let pairs = self.keys.windows(2).flat_map(|pair| {
-            let step = (pair[1].time - pair[0].time) / PIECES as f64;
-            (0..PIECES).map(move |k| pair[0].time + (k as f64 + 0.5) * step)
-        });
-        pairs.map(|t| self.velocity(t).length()).fold(0.0, f64::max)
+        let stretches = 0..self.keys.len() - 1;
+        stretches.flat_map(|i| self.pieces(i)).map(|(_, _, speed)| speed).fold(0.0, f64::max)
+    }
+
+    /// The pieces of a stretch: when each begins, how long it takes, and the speed in its middle.
+    fn pieces(&self, i: usize) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
+        let (start, end) = (self.keys[i].time, self.keys[i + 1].time);
+        let step = (end - start) / PIECES as f64;
+        let begin = move |k: usize| start + k as f64 * step;
+        (0..PIECES).map(move |k| (begin(k), step, self.velocity(begin(k) + 0.5 * step).length()))
     }
 
     fn stretch(&self, t: f64) -> usize {
@@ -139,18 +141,15 @@ impl CameraPath {
     /// The world time at which the camera's clock shows `clock`: dτ/dt = 1/γ, added up.
     fn world_time(&self, clock: f64) -> f64 {
         let i = self.clock.partition_point(|c| *c <= clock).clamp(1, self.clock.len() - 1) - 1;
-        let (start, end) = (self.keys[i].time, self.keys[i + 1].time);
-        let step = (end - start) / PIECES as f64;
         let mut shown = self.clock[i];
-        for k in 0..PIECES {
-            let speed = self.velocity(start + (k as f64 + 0.5) * step).length();
+        for (begin, step, speed) in self.pieces(i) {
             let more = step * (1.0 - speed * speed).sqrt();
             if shown + more >= clock {
-                return start + (k as f64 + (clock - shown) / more) * step;
+                return begin + (clock - shown) / more * step;
             }
             shown += more;
         }
-        end
+        self.keys[i + 1].time
     }
 
     /// Slope at a key: that of the parabola through it and its neighbours; at the ends, of the stretch there.
