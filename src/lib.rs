@@ -54,6 +54,7 @@ pub mod raster;
 pub mod relativity;
 pub mod render;
 pub mod scene;
+pub mod spectrum;
 pub mod transform;
 
 pub use terrell_geodesic as geodesic;
