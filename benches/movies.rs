@@ -36,7 +36,7 @@ fn main() {
             scene.view.set_time(from + step * f64::from(i)).unwrap();
             let options = render::Options { coloring, ..Default::default() };
             let (film, _) = render::render(&scene, &scene.camera().unwrap(), &options, |_| ()).unwrap();
-            let pixels = pixels_srgb(&film);
+            let pixels = pixels_srgb(&film, &terrell::tone::Development::default());
             for (_, movie, spent) in &mut movies {
                 let start = Instant::now();
                 movie.push(&pixels).unwrap();

@@ -9,9 +9,11 @@ use terrell::apparent::{ApparentMesh, Field, Subdivision};
 use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::geodesic::{Celerity, Event, Tetrad};
+use terrell::light::Shading;
 use terrell::raster::{Drawable, Samples, paint, shade, shade_again};
 use terrell::relativity::{ApparentMap, Motion, Points, PointsMut};
-use terrell::scene::{Lens, Material, Mesh, Projection, shapes};
+use terrell::scene::{Body, Lens, Light, LightKind, Material, Mesh, Projection, Scene, View, shapes};
+use terrell::spectrum::Spectrum;
 
 const REPEATS: usize = 9;
 
@@ -110,10 +112,13 @@ fn main() {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let cut = || ApparentMesh::new(mesh, &map, &field, &how).unwrap();
+                let scene = Scene::new("s", vec![Body::new("m", mesh.clone(), motion)], View::default());
+                let shading = Shading::new(&scene, [&observer], Coloring::Geometry).unwrap();
+                let shading = shading.seen_by(&observer);
                 let film = std::cell::RefCell::new(Film::new(lens.width(), lens.height()));
                 let draw = |seen: &ApparentMesh| {
                     let bodies = [Drawable { body: 0, mesh, map: &map, seen }];
-                    shade_again(&bodies, &lens, &samples, Coloring::Geometry, &mut film.borrow_mut());
+                    shade_again(&bodies, &lens, &samples, &shading, &mut film.borrow_mut());
                 };
                 let mut points: [Vec<f64>; 5] = std::array::from_fn(|_| vec![0.0; mesh.vertex_count()]);
                 let seen = cut();
@@ -151,13 +156,15 @@ fn main() {
     );
     for (name, mesh) in &meshes {
         let seen = ApparentMesh::new(mesh, &map, &field, &how).unwrap();
+        let scene = Scene::new("s", vec![Body::new("m", mesh.clone(), motion)], View::default());
+        let shading = Shading::new(&scene, [&observer], Coloring::Geometry).unwrap();
+        let shading = &shading.seen_by(&observer);
         for threads in [1, all] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let bodies = [Drawable { body: 0, mesh, map: &map, seen: &seen }];
-                let shaded = median_ms(|| drop(shade(&bodies, &lens, &samples, Coloring::Geometry)));
-                let painted =
-                    median_ms(|| drop(paint(&bodies, &lens, &samples, Coloring::Geometry).unwrap()));
+                let shaded = median_ms(|| drop(shade(&bodies, &lens, &samples, shading)));
+                let painted = median_ms(|| drop(paint(&bodies, &lens, &samples, shading).unwrap()));
                 println!(
                     "{:>10} {threads:>7} {:>9} | {shaded:>8.2} {painted:>8.2} {:>6.2}",
                     if name.is_empty() { mesh.triangles.len().to_string() } else { (*name).to_owned() },
@@ -167,4 +174,48 @@ fn main() {
             });
         }
     }
+
+    println!(
+        "\nms of drawing, median of {REPEATS}, one thread, by what a pixel shows; a sphere of 100 k triangles"
+    );
+    println!("{:>34} {:>8} {:>8} {:>14}", "", "ms", "ratio", "tables, ms");
+    let mesh = sphere(158);
+    let seen = ApparentMesh::new(&mesh, &map, &field, &how).unwrap();
+    let bodies = [Drawable { body: 0, mesh: &mesh, map: &map, seen: &seen }];
+    let dark = Scene::new("s", vec![Body::new("m", mesh.clone(), motion)], View::default());
+    let light = |kind| Light {
+        name: "light".into(),
+        kind,
+        color: [1.0; 3],
+        spectrum: Spectrum::default(),
+        strength: 3.0,
+        motion: Motion::at_rest(DVec3::ZERO),
+    };
+    let distant = LightKind::Distant { direction: DVec3::new(0.3, 0.8, -0.5).normalize() };
+    let [lit, near, bath] = [distant, LightKind::Point { position: DVec3::ZERO }, LightKind::Ambient]
+        .map(|kind| Scene { lights: vec![light(kind)], ..dark.clone() });
+    let ways = [
+        ("geometry", &dark, Coloring::Geometry),
+        ("doppler", &dark, Coloring::Doppler),
+        ("flat", &dark, Coloring::Flat),
+        ("spectral", &dark, Coloring::Spectral),
+        ("geometry, a distant light", &lit, Coloring::Geometry),
+        ("spectral, a distant light", &lit, Coloring::Spectral),
+        ("spectral, a lamp", &near, Coloring::Spectral),
+        ("spectral, ambient light", &bath, Coloring::Spectral),
+    ];
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| {
+        let mut film = Film::new(lens.width(), lens.height());
+        let mut plain = None;
+        for (name, scene, coloring) in ways {
+            let tables = median_ms(|| drop(Shading::new(scene, [&observer], coloring).unwrap()));
+            let shading = Shading::new(scene, [&observer], coloring).unwrap();
+            let shading = shading.seen_by(&observer);
+            let ms = median_ms(|| shade_again(&bodies, &lens, &samples, &shading, &mut film));
+            let plain = *plain.get_or_insert(ms);
+            let more = 1e6 * (ms - plain) / film.covered() as f64;
+            println!("{name:>34} {ms:>8.2} {:>8.2} {tables:>14.2}   {more:+.0} ns a pixel", ms / plain);
+        }
+    });
 }

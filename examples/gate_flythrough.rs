@@ -9,12 +9,18 @@ use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::PathBuf;
+use terrell::exposure::Exposure;
 use terrell::picture::{Movie, MovieFormat, pixels_srgb};
 use terrell::render::{Options, render};
 use terrell::scene::{Animation, Camera, Scene, builtin_scene};
+use terrell::tone::Tone;
 
-fn pixels(scene: &Scene, camera: &Camera) -> Result<Vec<u8>, Box<dyn Error>> {
-    Ok(pixels_srgb(&render(scene, camera, &Options::default(), |_| ())?.0))
+/// A film's frames, one after the other: at one exposure, so that nothing flickers.
+fn frames(scene: &Scene, cameras: &[Camera]) -> Result<Vec<Vec<u8>>, Box<dyn Error>> {
+    let options = Options::default();
+    let development = Exposure::Auto.of_film(Tone::Filmic, scene, cameras, &options)?;
+    let frame = |camera| Ok(pixels_srgb(&render(scene, camera, &options, |_| ())?.0, &development));
+    cameras.iter().map(frame).collect()
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -28,8 +34,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let animation = scene.animation.clone().ok_or("the scene is filmed")?;
         let animation = Animation { frames: 90, ..animation };
         let (standard, slow) = animation.standard(&scene)?;
-        for (fast, slow) in animation.cameras(&scene)?.iter().zip(&slow) {
-            let (left, right) = (pixels(&standard, slow)?, pixels(&scene, fast)?);
+        let right = frames(&scene, &animation.cameras(&scene)?)?;
+        for (left, right) in frames(&standard, &slow)?.iter().zip(&right) {
             let row = 3 * width as usize;
             let rows = left.chunks_exact(row).zip(right.chunks_exact(row));
             movie.push(&rows.flat_map(|(a, b)| [a, b].concat()).collect::<Vec<_>>())?;

@@ -9,10 +9,12 @@ use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::PathBuf;
+use terrell::exposure::Exposure;
 use terrell::geodesic::Celerity;
 use terrell::picture::{Movie, MovieFormat, pixels_srgb};
 use terrell::render::{Options, render};
 use terrell::scene::{Animation, STANDARD_BETA, Speed, builtin_scene};
+use terrell::tone::Tone;
 
 /// Frames a speed.
 const FRAMES: u32 = 60;
@@ -27,9 +29,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut movie = Movie::new(format, BufWriter::new(File::create(&path)?), width, height, 30.0)?;
     for beta in [STANDARD_BETA, 0.5, 0.9, 0.99] {
         scene.set_speed(Speed::Along(Celerity::from_beta(glam::DVec3::X * beta)?.vector().x))?;
-        for camera in animation.cameras(&scene)? {
-            let (film, _) = render(&scene, &camera, &Options::default(), |_| ())?;
-            movie.push(&pixels_srgb(&film))?;
+        let (cameras, options) = (animation.cameras(&scene)?, Options::default());
+        // Every speed at its own exposure: at 0.99c most of it is too dark for that of the first.
+        let development = Exposure::Auto.of_film(Tone::Filmic, &scene, &cameras, &options)?;
+        for camera in &cameras {
+            let (film, _) = render(&scene, camera, &options, |_| ())?;
+            movie.push(&pixels_srgb(&film, &development))?;
         }
     }
     movie.finish()?;

@@ -5,16 +5,45 @@ use std::sync::LazyLock;
 /// What a pixel shows of the light it receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Coloring {
-    /// The surfaces' own colours, self-luminous, without Doppler shift and beaming (the paper's Figs. 2, 3).
+    /// What the eye sees: spectra shifted and beamed (Nollert et al. 2000, Eq. 3 and 5).
     #[default]
+    Spectral,
+    /// Every spectrum taken for flat in ν, the paper's simplest: colours stay, brightness goes with D³.
+    Flat,
+    /// Radiance over all wavelengths, grey: it goes with D⁴. That of a colour is its luminance.
+    Bolometric,
+    /// Without Doppler shift and beaming: surfaces' own colours (the paper's Figs. 2, 3); lights, if there are any, from
+    /// where the surfaces meet them.
     Geometry,
     /// The Doppler factor in false colour: white at D = 1, through blue to violet where it rises to 32,
     /// through red to black-red where it falls to 1/32.
     Doppler,
 }
 
+impl Coloring {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Spectral, Self::Flat, Self::Bolometric, Self::Geometry, Self::Doppler];
+
+    /// Whether brightness goes with the shift, so that a picture needs an exposure.
+    pub fn is_beamed(self) -> bool {
+        matches!(self, Self::Spectral | Self::Flat | Self::Bolometric)
+    }
+}
+
+impl std::fmt::Display for Coloring {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Spectral => "spectral",
+            Self::Flat => "flat",
+            Self::Bolometric => "bolometric",
+            Self::Geometry => "geometry",
+            Self::Doppler => "doppler",
+        })
+    }
+}
+
 /// Octaves of D either way that false colour spans.
-const OCTAVES: f64 = 5.0;
+pub const OCTAVES: f64 = 5.0;
 
 /// log₂D over [`OCTAVES`] and the linear sRGB colour there.
 const SCALE: [(f64, [f32; 3]); 9] = [
@@ -29,18 +58,8 @@ const SCALE: [(f64, [f32; 3]); 9] = [
     (1.0, [0.1, 0.0, 0.15]),
 ];
 
-impl Coloring {
-    /// Linear sRGB seen of a surface under the Doppler factor `doppler`; `own` gives its colour, if that matters.
-    #[inline]
-    pub fn light(self, own: impl FnOnce() -> [f32; 3], doppler: f64) -> [f32; 3] {
-        match self {
-            Self::Geometry => own(),
-            Self::Doppler => false_color(doppler),
-        }
-    }
-}
-
-fn false_color(doppler: f64) -> [f32; 3] {
+/// Linear sRGB that stands for a Doppler factor.
+pub fn false_color(doppler: f64) -> [f32; 3] {
     let at = (doppler.log2() / OCTAVES).clamp(-1.0, 1.0);
     let above = SCALE.iter().position(|(stop, _)| at <= *stop).unwrap_or(SCALE.len() - 1).max(1);
     let ((from, a), (to, b)) = (SCALE[above - 1], SCALE[above]);
@@ -50,7 +69,11 @@ fn false_color(doppler: f64) -> [f32; 3] {
 
 /// The linear value of an 8-bit sRGB component (IEC 61966-2-1).
 pub fn linear(encoded: u8) -> f32 {
-    let v = f32::from(encoded) / 255.0;
+    linear_of(f32::from(encoded) / 255.0)
+}
+
+/// The linear value of an sRGB component between 0 and 1 (IEC 61966-2-1).
+pub fn linear_of(v: f32) -> f32 {
     if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
@@ -120,13 +143,12 @@ mod tests {
 
     #[test]
     fn blue_comes_towards_us_and_red_goes_away() {
-        let at = |d| Coloring::Doppler.light(|| [0.0; 3], d);
+        let at = false_color;
         assert_eq!(at(1.0), [0.9; 3]);
         assert!(at(2.0)[2] > 2.0 * at(2.0)[0]);
         assert!(at(0.5)[0] > 2.0 * at(0.5)[2]);
         assert_eq!(at(1e9), at(32.0));
         assert_eq!(at(1e-9), at(1.0 / 32.0));
-        assert_eq!(Coloring::Geometry.light(|| [0.1, 0.2, 0.3], 7.0), [0.1, 0.2, 0.3]);
     }
 
     #[test]

@@ -5,14 +5,16 @@
 //! become the hyperbolas they look like, to a stated pixel error, and draws the result.
 //!
 //! ```
-//! use terrell::{render, scene};
+//! use terrell::{render, scene, tone};
 //!
 //! let mut scene = scene::builtin_scenes()[0].scene(); // the cube of Fig. 2, at 0.9c
 //! scene.view.size = [320, 240];
 //! let camera = scene.camera()?;
 //! let (film, _) = render::render(&scene, &camera, &render::Options::default(), |_| ())?;
+//! let tone = tone::Tone::Filmic;
+//! let development = tone::Development { ev: tone.metered(film.color.iter().copied()), tone };
 //! let mut png = Vec::new();
-//! terrell::picture::write_png(&film, &mut png)?;
+//! terrell::picture::write_png(&film, &development, &mut png)?;
 //! assert!(png.starts_with(b"\x89PNG"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -48,13 +50,16 @@ pub mod apparent;
 pub mod color;
 pub mod drawing;
 pub mod export;
+pub mod exposure;
 pub mod film;
+pub mod light;
 pub mod picture;
 pub mod raster;
 pub mod relativity;
 pub mod render;
 pub mod scene;
 pub mod spectrum;
+pub mod tone;
 pub mod transform;
 
 pub use terrell_geodesic as geodesic;

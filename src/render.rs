@@ -3,6 +3,7 @@
 use crate::apparent::{ApparentMesh, Field, Subdivision, TooManyPieces};
 use crate::color::Coloring;
 use crate::film::Film;
+use crate::light::{DopplerAt, Shading, ShadingError};
 use crate::raster::{Drawable, Samples, TooManyToPaint, paint, shade_again};
 use crate::relativity::ApparentMap;
 use crate::scene::{Camera, Mesh, Scene};
@@ -21,6 +22,8 @@ pub struct Options {
     pub samples: u32,
     /// What a pixel shows.
     pub coloring: Coloring,
+    /// Where the Doppler factor is worked out.
+    pub doppler_at: DopplerAt,
     /// What decides which triangle a pixel sees.
     pub raster: Raster,
 }
@@ -44,12 +47,37 @@ pub enum RenderError {
     /// More pieces than can be painted.
     #[error(transparent)]
     Paint(#[from] TooManyToPaint),
+    /// A spectrum that cannot be.
+    #[error(transparent)]
+    Shading(#[from] ShadingError),
 }
 
 impl Default for Options {
     fn default() -> Self {
         let Subdivision { tolerance, most } = Subdivision::default();
-        Self { tolerance, most_pieces: most, samples: 1, coloring: Coloring::Geometry, raster: Raster::Cpu }
+        Self {
+            tolerance,
+            most_pieces: most,
+            samples: 1,
+            coloring: Coloring::default(),
+            doppler_at: DopplerAt::default(),
+            raster: Raster::Cpu,
+        }
+    }
+}
+
+impl Options {
+    /// How the surfaces of a scene shine and are lit as these cameras see it: to be made once for all of them.
+    ///
+    /// # Errors
+    /// If a spectrum cannot be.
+    pub fn shading<'a>(
+        &self,
+        scene: &Scene,
+        cameras: impl IntoIterator<Item = &'a Camera>,
+    ) -> Result<Shading, ShadingError> {
+        let observers = cameras.into_iter().map(|c| &c.observer);
+        Ok(Shading::new(scene, observers, self.coloring)?.with_doppler_at(self.doppler_at))
     }
 }
 
@@ -79,7 +107,7 @@ pub enum Step {
 /// Eq. 1), cut until flat triangles show it to the pixel, and drawn by a z-buffer or a painter.
 ///
 /// # Errors
-/// If the bodies would be cut into more pieces than allowed, or than can be painted.
+/// If the bodies would be cut into more pieces than allowed, or than can be painted, or a spectrum cannot be.
 pub fn render(
     scene: &Scene,
     camera: &Camera,
@@ -87,11 +115,12 @@ pub fn render(
     step: impl FnMut(Step),
 ) -> Result<(Film, Report), RenderError> {
     let mut film = Film::new(0, 0);
-    let report = render_again(scene, camera, options, &mut film, step)?;
+    let shading = options.shading(scene, [camera])?;
+    let report = render_again(scene, camera, options, &shading, &mut film, step)?;
     Ok((film, report))
 }
 
-/// As [`render`], on a film used before.
+/// As [`render`], on a film used before, with a [shading](Options::shading) made before.
 ///
 /// # Errors
 /// As [`render`].
@@ -99,6 +128,7 @@ pub fn render_again(
     scene: &Scene,
     camera: &Camera,
     options: &Options,
+    shading: &Shading,
     film: &mut Film,
     mut step: impl FnMut(Step),
 ) -> Result<Report, RenderError> {
@@ -122,9 +152,10 @@ pub fn render_again(
     let drawables: Vec<_> =
         seen.iter().enumerate().map(|(body, (map, mesh, seen))| Drawable { body, mesh, map, seen }).collect();
     let samples = Samples::new(options.samples);
+    let shading = &shading.seen_by(&camera.observer);
     match options.raster {
-        Raster::Cpu => shade_again(&drawables, &camera.lens, &samples, options.coloring, film),
-        Raster::Skia => *film = paint(&drawables, &camera.lens, &samples, options.coloring)?,
+        Raster::Cpu => shade_again(&drawables, &camera.lens, &samples, shading, film),
+        Raster::Skia => *film = paint(&drawables, &camera.lens, &samples, shading)?,
     }
     let report = Report {
         triangles: scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum(),

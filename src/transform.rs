@@ -3,8 +3,10 @@
 use crate::apparent::{Cutting, CuttingError, Moment, see_vertices};
 use crate::color::Coloring;
 use crate::export::{Eye, Frame, Model, Object, Surface};
+use crate::light::{Point, SeenShading, Shading, ShadingError};
 use crate::relativity::ApparentMap;
-use crate::scene::{Body, Camera, Material, Mesh, Paint, Projection, Scene};
+use crate::scene::{Body, Camera, Material, Mesh, Paint, Projection, Scene, Surface as Shines};
+use crate::tone::{Development, Tone};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -25,13 +27,21 @@ pub struct Options {
     pub most_pieces: usize,
     /// The axes of what comes out.
     pub axes: Axes,
-    /// What the colours are.
+    /// What the colours are: the surfaces' own, or as they are seen at the vertices.
     pub coloring: Coloring,
+    /// Exposure of colours as they are seen; none for one that makes the brightest white but for one in twenty.
+    pub ev: Option<f32>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: None, most_pieces: 10_000_000, axes: Axes::World, coloring: Coloring::Geometry }
+        Self {
+            tolerance: None,
+            most_pieces: 10_000_000,
+            axes: Axes::World,
+            coloring: Coloring::Geometry,
+            ev: None,
+        }
     }
 }
 
@@ -58,6 +68,8 @@ pub struct Report {
     pub vertices: usize,
     /// Least and greatest Doppler factor of a vertex.
     pub doppler: Option<[f32; 2]>,
+    /// Exposure of the colours.
+    pub ev: f32,
     /// Time for mapping and cutting.
     pub subdivision: Duration,
 }
@@ -71,6 +83,9 @@ pub enum TransformError {
     /// The axes.
     #[error("the camera cannot be set up: {0}")]
     Axes(#[from] TetradError),
+    /// A spectrum that cannot be.
+    #[error(transparent)]
+    Shading(#[from] ShadingError),
 }
 
 /// Moves every body to where `camera` sees it (Nollert et al. 2000, Eq. 1), cut until flat triangles are nowhere
@@ -93,9 +108,11 @@ pub fn transform(
     let observers: Vec<Observer> =
         moments.iter().map(|m| Observer::new(m, options.axes)).collect::<Result<_, _>>()?;
     let diagonal = |body: &Body| body.mesh.bounds().map_or(0.0, |(low, high)| (high - low).length());
+    let shading = Shading::new(scene, moments, options.coloring)?;
+    let shadings: Vec<_> = moments.iter().map(|m| shading.seen_by(m)).collect();
     let mut report = Report::default();
     let mut objects = Vec::with_capacity(scene.bodies.len());
-    for body in &scene.bodies {
+    for (index, body) in scene.bodies.iter().enumerate() {
         let left = options.most_pieces - report.pieces;
         let size = diagonal(body);
         let usual = if size > 0.0 { USUAL_TOLERANCE * size } else { USUAL_TOLERANCE };
@@ -117,7 +134,11 @@ pub fn transform(
         })?;
         report.triangles += body.mesh.triangles.len();
         report.pieces += cutting.triangles.len();
-        objects.push(object(&body.name, &of, &observers, &cutting, options.coloring));
+        let seen = Seen { index, moments: &of, observers: &observers, shadings: &shadings };
+        objects.push(object(&body.name, &seen, &cutting, options.coloring));
+    }
+    if options.coloring.is_beamed() {
+        report.ev = expose(&mut objects, options.ev);
     }
     let frames = objects.iter().flat_map(|o| &o.surfaces).flat_map(|s| &s.frames);
     let range = |range: Option<[f32; 2]>, d: &f32| {
@@ -186,21 +207,37 @@ struct Group {
     triangles: Vec<[u32; 3]>,
 }
 
-fn object(
-    name: &str,
-    moments: &[Moment<'_>],
-    observers: &[Observer],
-    cutting: &Cutting,
-    coloring: Coloring,
-) -> Object {
-    let mesh = moments[0].mesh;
+/// A body at all moments.
+struct Seen<'a> {
+    /// Its number in the scene.
+    index: usize,
+    moments: &'a [Moment<'a>],
+    observers: &'a [Observer],
+    shadings: &'a [SeenShading<'a>],
+}
+
+/// One exposure for all colours; returns it.
+fn expose(objects: &mut [Object], ev: Option<f32>) -> f32 {
+    let frames = |objects: &[Object]| -> Vec<[f32; 3]> {
+        let frames = objects.iter().flat_map(|o| &o.surfaces).flat_map(|s| &s.frames);
+        frames.flat_map(|f| f.colors.iter().copied()).collect()
+    };
+    let ev = ev.unwrap_or_else(|| Tone::Linear.metered(frames(objects)));
+    let development = Development { ev, tone: Tone::Linear };
+    let frames = objects.iter_mut().flat_map(|o| &mut o.surfaces).flat_map(|s| &mut s.frames);
+    frames.flat_map(|f| &mut f.colors).for_each(|color| *color = development.shown(*color));
+    ev
+}
+
+fn object(name: &str, seen: &Seen<'_>, cutting: &Cutting, coloring: Coloring) -> Object {
+    let mesh = seen.moments[0].mesh;
     let own_colors = coloring == Coloring::Geometry;
+    let has_materials = coloring != Coloring::Doppler;
     let face_normals = face_normals(mesh);
     let mut groups: Vec<Group> = Vec::new();
-    groups.resize_with(if own_colors { mesh.materials.len().max(1) } else { 1 }, Group::default);
+    groups.resize_with(if has_materials { mesh.materials.len().max(1) } else { 1 }, Group::default);
     for (triangle, &face) in cutting.triangles.iter().zip(&cutting.face) {
-        let material =
-            if own_colors { mesh.material.get(face as usize).map_or(0, |m| *m as usize) } else { 0 };
+        let material = if has_materials { mesh.material_index(face as usize) } else { 0 };
         let direction = if mesh.normals.is_empty() {
             // Faces of one plane differ by rounding.
             face_normals[face as usize].map(|v| (v * 1e5).round() as i32)
@@ -208,7 +245,7 @@ fn object(
             [0; 3]
         };
         let color = match &mesh.paint {
-            Paint::Faces(colors) if own_colors => colors[face as usize].map(f32::to_bits),
+            Paint::Faces(colors) if has_materials => colors[face as usize].map(f32::to_bits),
             _ => [0; 3],
         };
         let Group { numbers, corners, triangles } = &mut groups[material];
@@ -225,28 +262,52 @@ fn object(
         .enumerate()
         .filter(|(_, group)| !group.triangles.is_empty())
         .map(|(material, group)| Surface {
-            material: material_of(mesh, material, own_colors),
+            material: material_of(mesh, material, coloring),
             triangles: group.triangles.clone(),
             uv: match &cut.uv {
-                uv if uv.is_empty() || !own_colors => Vec::new(),
+                uv if uv.is_empty() || !has_materials => Vec::new(),
                 uv => group.corners.iter().map(|(vertex, _)| uv[*vertex as usize]).collect(),
             },
             frames: Vec::new(),
         })
         .collect();
     groups.retain(|group| !group.triangles.is_empty());
-    for (moment, observer) in moments.iter().zip(observers) {
+    for ((moment, observer), shading) in seen.moments.iter().zip(seen.observers).zip(seen.shadings) {
         let cut = cutting.apply(moment.mesh);
         let normals = self::face_normals(moment.mesh);
-        let (seen, doppler) = see_vertices(&cut, moment.map);
+        let (positions_seen, doppler) = see_vertices(&cut, moment.map);
         for (surface, group) in surfaces.iter_mut().zip(&groups) {
-            let positions =
-                group.corners.iter().map(|(v, _)| observer.place + Observer::turned(seen[*v as usize]));
+            let positions = group
+                .corners
+                .iter()
+                .map(|(v, _)| observer.place + Observer::turned(positions_seen[*v as usize]));
             // Of a point at the observer there is no Doppler factor.
             let doppler_of = |v: u32| Some(doppler[v as usize]).filter(|d| d.is_finite()).unwrap_or(1.0);
+            let normal_rest = |vertex: u32, face: u32| match cut.normals.get(vertex as usize) {
+                Some(normal) if *normal != [0.0; 3] => DVec3::from_array(normal.map(f64::from)),
+                _ => DVec3::from_array(normals[face as usize]),
+            };
             let colors = match &cut.paint {
                 _ if !own_colors => {
-                    let light = |(v, _): &(u32, u32)| coloring.light(|| [0.0; 3], doppler_of(*v));
+                    let light = |(v, face): &(u32, u32)| {
+                        let face_index = *face as usize;
+                        let paint = match &cut.paint {
+                            Paint::Faces(_) => face_color(mesh, *face),
+                            paint => paint.at(0, [*v; 3], [1.0, 0.0, 0.0]),
+                        };
+                        // A texture stays a texture, times what is seen of white there.
+                        let colors = || {
+                            let plain = crate::scene::Colors { base: paint, ..Default::default() };
+                            mesh.material_of(face_index).map_or(plain, |m| m.colors(paint, |_| [1.0; 3]))
+                        };
+                        let point = || {
+                            let facing = DVec3::from_array(normals[face_index]);
+                            let offset = moment.map.offset_rest(cut.vertex(*v));
+                            Point::new(offset, facing, normal_rest(*v, *face))
+                        };
+                        let material = mesh.material_index(face_index);
+                        shading.radiance(seen.index, material, doppler_of(*v), colors, point)
+                    };
                     group.corners.iter().map(light).collect()
                 }
                 Paint::Uniform(_) => Vec::new(),
@@ -255,10 +316,7 @@ fn object(
                 Paint::Faces(_) => group.corners.iter().map(|(_, f)| face_color(mesh, *f)).collect(),
             };
             let normal = |(vertex, face): &(u32, u32)| {
-                let rest = match cut.normals.get(*vertex as usize) {
-                    Some(normal) if *normal != [0.0; 3] => DVec3::from_array(normal.map(f64::from)),
-                    _ => DVec3::from_array(normals[*face as usize]),
-                };
+                let rest = normal_rest(*vertex, *face);
                 let seen = moment.map.seen_normal(cut.vertex(*vertex), rest);
                 Observer::turned(seen).as_vec3().normalize_or(Vec3::Y)
             };
@@ -286,14 +344,20 @@ fn face_color(mesh: &Mesh, face: u32) -> [f32; 3] {
     mesh.paint.at(face as usize, mesh.triangles[face as usize], [1.0, 0.0, 0.0])
 }
 
-/// What a group is made of, with the mesh's one colour in it, if it has one. Paint alone shines by itself.
-fn material_of(mesh: &Mesh, index: usize, own_colors: bool) -> Material {
-    let name = |material: &Material| material.name.clone();
-    if !own_colors {
-        let name = mesh.materials.first().map(name).unwrap_or_default();
-        return Material { name, unlit: true, ..Material::default() };
+/// What a group is made of, with the mesh's one colour in it, if it has one. Paint alone shines by itself, and so do colours
+/// as they are seen: of the material only the texture is left.
+fn material_of(mesh: &Mesh, index: usize, coloring: Coloring) -> Material {
+    if coloring != Coloring::Geometry {
+        let textured = coloring != Coloring::Doppler;
+        let own = mesh.materials.get(index).cloned().unwrap_or_default();
+        return Material {
+            name: own.name,
+            base_texture: own.base_texture.or(own.emission_texture).filter(|_| textured),
+            surface: Shines::Luminous,
+            ..Material::default()
+        };
     }
-    let usual = || Material { unlit: true, ..Material::default() };
+    let usual = || Material { surface: Shines::Luminous, ..Material::default() };
     let mut material = mesh.materials.get(index).cloned().unwrap_or_else(usual);
     if let Paint::Uniform(color) = mesh.paint {
         material.base_color = [0, 1, 2].map(|i| material.base_color[i] * color[i]);

@@ -101,7 +101,7 @@ fn what_rests_cannot_be_filmed_unless_a_camera_goes_round_it() {
         [[animation.key]]\ntime = 40\nposition = [4, 0, 0]\nlook_at = [0, 0, 0]\n"
     );
     std::fs::write(here.join("round.toml"), &round).unwrap();
-    good(&["animate", "round.toml", "-o", "round/"], here);
+    good(&["animate", "round.toml", "-o", "round/", "--color", "geometry"], here);
     // Yellow, green, blue: the cube's sides.
     let middle = |i: usize| pixels(here.join(format!("round/frame_{i:05}.png"))).get_pixel(32, 24).0;
     let [a, b, c] = [0, 1, 2].map(middle);

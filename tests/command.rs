@@ -41,13 +41,20 @@ fn the_main_job_needs_no_file_and_no_flag() {
     assert_eq!(line.lines().count(), 1);
     let picture = image::open(folder.path().join("cube.png")).unwrap().to_rgb8();
     assert_eq!(picture.dimensions(), (1280, 720));
-    // Fig. 2: the trailing side is seen, yellow; the near side, green; the picture's corners are empty.
+    // Seen abreast its light is shifted to the red, nowhere as bright in blue as in red, and the picture's corners are
+    // empty.
+    let seen: Vec<_> = picture.pixels().filter(|p| p.0 != [0; 3]).collect();
+    let red = |p: &&&image::Rgb<u8>| p.0[0] > 30 && p.0[0] > p.0[2];
+    assert!(seen.len() > 70_000 && seen.iter().filter(red).count() * 10 > 9 * seen.len(), "{}", seen.len());
+    assert_eq!(picture.get_pixel(5, 5).0, [0, 0, 0]);
+    terrell(folder.path(), &["render", "cube", "--color", "geometry", "-q"]).success();
+    let picture = image::open(folder.path().join("cube.png")).unwrap().to_rgb8();
+    // Fig. 2: the trailing side is seen, yellow; the near side, green.
     let count = |wanted: [u8; 3]| {
         picture.pixels().filter(|p| p.0.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) < 3)).count()
     };
     assert!(count([249, 237, 89]) > 50_000, "yellow");
     assert!(count([89, 231, 124]) > 20_000, "green");
-    assert_eq!(picture.get_pixel(5, 5).0, [0, 0, 0]);
 }
 
 #[test]
@@ -105,7 +112,8 @@ fn every_way_to_say_a_velocity_says_the_same() {
     let draw = |flags: &[&str]| {
         terrell(
             folder.path(),
-            &[&["render", "cube", "-o", "a.exr", "--size", "96x64", "-q"], flags].concat(),
+            &[&["render", "cube", "-o", "a.exr", "--size", "96x64", "-q", "--color", "geometry"], flags]
+                .concat(),
         )
         .success();
         std::fs::read(folder.path().join("a.exr")).unwrap()
@@ -341,7 +349,7 @@ fn csv(output: &[u8]) -> Vec<Vec<Option<f64>>> {
     let mut lines = text.lines();
     assert_eq!(
         lines.next().unwrap(),
-        "x,y,z,apparent_x,apparent_y,apparent_z,distance,doppler,cos_theta_rest,cos_theta_observer,emission_time"
+        "x,y,z,apparent_x,apparent_y,apparent_z,distance,doppler,cos_theta_rest,cos_theta_observer,emission_time,color_temperature"
     );
     lines
         .map(|line| {
@@ -456,9 +464,12 @@ fn fields_without_meaning_are_empty() {
     };
     let rest = at(&["--beta", "0,0,0", "1,2,2"]);
     assert_eq!(rest[3..8], [Some(1.0), Some(2.0), Some(2.0), Some(3.0), Some(1.0)]);
-    assert_eq!(rest[8..], [None, None, Some(-3.0)]);
+    assert_eq!(rest[8..], [None, None, Some(-3.0), Some(6504.0)]);
     let here = at(&["--beta", "0.5,0,0", "0,0,0"]);
-    assert_eq!(here[6..], [Some(0.0), None, None, None, Some(0.0)]);
+    assert_eq!(here[6..], [Some(0.0), None, None, None, Some(0.0), None]);
+    // Receding at 0.6c a black body of 6000 K is seen as one of 3000 K.
+    let cold = at(&["--beta", "0.6,0,0", "--temperature", "6000", "5,0,0"]);
+    assert!((cold[11].unwrap() - 3000.0).abs() < 1e-9, "{cold:?}");
 }
 
 #[test]
@@ -518,7 +529,11 @@ fn a_closed_pipe_ends_it_quietly() {
 #[test]
 fn an_exr_holds_what_is_seen() {
     let folder = folder();
-    terrell(folder.path(), &["render", "cube", "-o", "a.exr", "--size", "96x64", "-q"]).success();
+    terrell(
+        folder.path(),
+        &["render", "cube", "-o", "a.exr", "--size", "96x64", "-q", "--color", "geometry"],
+    )
+    .success();
     let film = read_exr(&folder.path().join("a.exr"));
     let mut names: Vec<&str> = film.keys().map(String::as_str).collect();
     names.sort_unstable();

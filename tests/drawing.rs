@@ -10,6 +10,7 @@ use terrell::picture::pixels_srgb;
 use terrell::relativity::{ApparentMap, Motion};
 use terrell::render::{Options, render};
 use terrell::scene::{Body, Camera, Mesh, Paint, Projection, Scene, View, shapes};
+use terrell::tone::Development;
 
 const SIZE: [u32; 2] = [1280, 720];
 
@@ -30,8 +31,10 @@ fn drawn(scene: &Scene, options: OverlayOptions) -> (Camera, Film, Vec<u8>) {
     let camera = scene.camera().unwrap();
     let how = Options::default();
     let (film, _) = render(scene, &camera, &how, |_| ()).unwrap();
-    let mut pixels = pixels_srgb(&film);
-    let shot = Shot { scene, camera: &camera, film: &film, tolerance: how.tolerance };
+    let development = Development::default();
+    let mut pixels = pixels_srgb(&film, &development);
+    let (tolerance, coloring) = (how.tolerance, how.coloring);
+    let shot = Shot { scene, camera: &camera, film: &film, tolerance, coloring, development };
     let notes = Overlay::new(scene, options).unwrap().draw(&mut pixels, &shot);
     assert!(notes.is_empty(), "{notes:?}");
     (camera, film, pixels)

@@ -5,6 +5,7 @@ mod common;
 use common::Random;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
+use terrell::color::Coloring;
 use terrell::film::{Film, NOTHING};
 use terrell::geodesic::{Celerity, Event};
 use terrell::relativity::{ApparentMap, Motion};
@@ -13,7 +14,7 @@ use terrell::scene::{Body, Camera, Mesh, Projection, Scene, Speed, View, builtin
 
 fn both(scene: &Scene, camera: &Camera, samples: u32) -> [Film; 2] {
     [Raster::Cpu, Raster::Skia].map(|raster| {
-        let options = Options { raster, samples, ..Options::default() };
+        let options = Options { raster, samples, coloring: Coloring::Geometry, ..Options::default() };
         render(scene, camera, &options, |_| ()).unwrap().0
     })
 }

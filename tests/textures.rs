@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
+use terrell::color::Coloring;
 use terrell::color::encoded;
 use terrell::film::{Film, NOTHING};
 use terrell::geodesic::{Celerity, Event, FourVector};
@@ -40,7 +41,9 @@ fn scene(mesh: Mesh, celerity: DVec3, origin: DVec3, eye: DVec3, fov_deg: f64) -
 }
 
 fn draw(scene: &Scene, camera: &Camera, samples: u32) -> Film {
-    render(scene, camera, &Options { samples, ..Options::default() }, |_| ()).unwrap().0
+    render(scene, camera, &Options { samples, coloring: Coloring::Geometry, ..Options::default() }, |_| ())
+        .unwrap()
+        .0
 }
 
 fn picture(side: u32, texel: impl Fn(u32, u32) -> [u8; 3]) -> Texture {

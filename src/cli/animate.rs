@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 use terrell::picture::MovieFormat;
 use terrell::render::Options;
 use terrell::scene::{Animation, Camera, Pace, STANDARD_BETA, Scene, Speed};
+use terrell::tone::Development;
 
 /// A film of a scene
 ///
@@ -93,7 +94,8 @@ impl Animate {
     pub fn run(self) -> Result<(), Fault> {
         let start = Instant::now();
         let options = self.look.options()?;
-        let takes = self.scenes.iter().map(|scene| self.take(scene)).collect::<Result<Vec<_>, _>>()?;
+        let takes =
+            self.scenes.iter().map(|scene| self.take(scene, &options)).collect::<Result<Vec<_>, _>>()?;
         let size = takes[0].size();
         if let Some(take) = takes.iter().find(|take| take.size() != size) {
             let [width, height] = take.size();
@@ -114,6 +116,7 @@ impl Animate {
         let mut shooting = Shooting {
             takes: &takes,
             options: &options,
+            each_metered: self.look.develop.exposure(options.coloring).1,
             size,
             bar: progress_bar(takes.iter().map(|t| t.animation.frames as usize).sum(), self.report.quiet),
             tally: Tally::default(),
@@ -124,11 +127,20 @@ impl Animate {
             Target::Folder => shooting.shoot_folder(&output)?,
         }
         shooting.bar.finish_and_clear();
-        let Shooting { tally, notes, .. } = shooting;
+        let Shooting { tally, notes, each_metered, .. } = shooting;
         let stopped = stop::is_asked();
         let whole = start.elapsed();
-        let done =
-            Done { takes: &takes, options: &options, output: &output, size, tally, whole, stopped, notes };
+        let done = Done {
+            takes: &takes,
+            options: &options,
+            output: &output,
+            each_metered,
+            size,
+            tally,
+            whole,
+            stopped,
+            notes,
+        };
         let summary = done.summary();
         self.report.finish(Vec::new(), &read, &summary)?;
         self.report.tell(&done.line(), &summary)?;
@@ -138,17 +150,26 @@ impl Animate {
         Ok(())
     }
 
-    fn take(&self, source: &str) -> Result<Take, Fault> {
+    fn take(&self, source: &str, options: &Options) -> Result<Take, Fault> {
         let speed = match self.look.scene.velocity.speed()? {
             Some(Speed::Along(0.0)) => Some(Speed::Along(STANDARD_BETA)),
             speed => speed,
         };
-        let scene = self.look.scene.open(source, speed, |view| self.look.set_lens(view))?;
+        let mut scene = self.look.scene.open(source, speed, |view| self.look.set_lens(view))?;
+        scene.notes.extend(summary::light_notes(&scene, options.coloring));
         let animation = self.animation(&scene)?;
         let cameras = animation.cameras(&scene)?;
         let panel = |scene: Scene, cameras: Vec<Camera>| -> Result<Panel, Fault> {
             let overlay = self.drawing.overlay(&scene)?;
-            Ok(Panel { scene, cameras, overlay })
+            let shading = options.shading(&scene, &cameras)?;
+            let (tone, (exposure, each)) =
+                (self.look.develop.tone(options.coloring), self.look.develop.exposure(options.coloring));
+            let development = match each {
+                // Every frame's own.
+                true => Development { ev: 0.0, tone },
+                false => exposure.of_film(tone, &scene, &cameras, options)?,
+            };
+            Ok(Panel { scene, cameras, overlay, shading, development })
         };
         let mut panels = Vec::new();
         if self.beside_standard {
@@ -207,6 +228,7 @@ struct Done<'a> {
     takes: &'a [Take],
     options: &'a Options,
     output: &'a Path,
+    each_metered: bool,
     size: [u32; 2],
     tally: Tally,
     whole: Duration,
@@ -226,6 +248,22 @@ impl Done<'_> {
         if all.is_zero() { 0.0 } else { encoding.as_secs_f64() / all.as_secs_f64() }
     }
 
+    fn colors_in_words(&self, panel: &Panel) -> String {
+        if self.each_metered {
+            format!(
+                "{} colour, every frame at an EV of its own, {}",
+                self.options.coloring, panel.development.tone
+            )
+        } else {
+            summary::colors_in_words(self.options.coloring, &panel.development)
+        }
+    }
+
+    /// The exposure, where there is one for all frames.
+    fn ev(&self, panel: &Panel) -> Option<f32> {
+        (!self.each_metered).then_some(panel.development.ev)
+    }
+
     fn line(&self) -> String {
         let frames = |count: usize| format!("{count} frame{}", if count == 1 { "" } else { "s" });
         let tally = &self.tally;
@@ -233,13 +271,14 @@ impl Done<'_> {
         let panel = take.panels.last().expect("a take has a panel");
         let bodies = summary::bodies_in_words(&summary::gammas(&panel.scene, &panel.cameras[0]));
         let mut line = format!(
-            "{}: {} of {}x{} {}, {} a second, flat spacetime, {bodies}: apparent shading on the CPU, {:.1} ms a frame ({:.0} % of the work for writing)\n",
+            "{}: {} of {}x{} {}, {} a second, flat spacetime, {bodies}: apparent shading on the CPU, {}, {:.1} ms a frame ({:.0} % of the work for writing)\n",
             self.output.display(),
             frames(tally.drawn),
             self.size[0],
             self.size[1],
             panel.cameras[0].lens.projection(),
             take.animation.fps,
+            self.colors_in_words(panel),
             1e3 * self.whole.as_secs_f64() / tally.drawn.max(1) as f64,
             100.0 * self.encoder_share(),
         );
@@ -278,6 +317,9 @@ impl Done<'_> {
                 "last_camera": summary::camera(last),
                 "bodies": summary::bodies(&panel.scene, first),
                 "beside_standard": take.panels.len() > 1,
+                "exposure_ev": take.panels.iter().map(|p| self.ev(p)).collect::<Vec<_>>(),
+                "lights": summary::lights(&panel.scene),
+                "spectra": summary::spectra(&panel.shading),
                 "notes": panel.scene.notes,
             })
         };
@@ -288,7 +330,9 @@ impl Done<'_> {
             "method": "apparent",
             "raster": summary::raster(self.options.raster),
             "threads": rayon::current_num_threads(),
-            "color": summary::color(self.options.coloring),
+            "color": self.options.coloring.to_string(),
+            "doppler_at": summary::doppler_at(self.options.doppler_at),
+            "tone": self.takes[0].panels[0].development.tone.to_string(),
             "tolerance_px": self.options.tolerance,
             "samples": self.options.samples,
             "size": self.size,

@@ -23,6 +23,9 @@ pub struct DrawingFlags {
     /// picture. A panorama has none.
     #[arg(long)]
     scale_bar: bool,
+    /// Write exposure and tone curve, or draw the scale of false colours, at the upper right
+    #[arg(long)]
+    legend: bool,
     /// Write a line at the lower left; give it again for another line
     ///
     /// {beta} and {gamma} stand for the speed and the Lorentz factor of the body that moves fastest relative to the
@@ -52,6 +55,7 @@ impl DrawingFlags {
             edges,
             axes: self.axes,
             scale_bar: self.scale_bar,
+            legend: self.legend,
             caption: caption.transpose()?,
         };
         Ok(if options.is_empty() { None } else { Some(Overlay::new(scene, options)?) })
@@ -62,7 +66,7 @@ impl DrawingFlags {
 pub fn check_format(overlay: &Option<Overlay>, output: &Path) -> Result<(), Fault> {
     if overlay.is_some() && Format::of(output)? == Format::Exr {
         return Err(format!(
-            "{}: an EXR holds what was seen, and nothing can be drawn on it; write to a .png file, or leave out --edges, --axes, --scale-bar and --caption",
+            "{}: an EXR holds what was seen, and nothing can be drawn on it; write to a .png file, or leave out --edges, --axes, --scale-bar, --legend and --caption",
             output.display()
         )
         .into());
@@ -76,7 +80,7 @@ pub fn prepare(
     shot: &Shot<'_>,
     path: &Path,
 ) -> Result<(Pending, Vec<String>), WriteError> {
-    let mut pixels = picture::pixels_srgb(shot.film);
+    let mut pixels = picture::pixels_srgb(shot.film, &shot.development);
     let notes = overlay.draw(&mut pixels, shot);
     let Film { width, height, .. } = *shot.film;
     let picture = picture::prepare(path, |to| picture::write_png_pixels(width, height, &pixels, to))?;

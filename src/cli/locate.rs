@@ -1,5 +1,5 @@
 use super::Fault;
-use super::values::{event, vector};
+use super::values::{event, number, vector};
 use super::velocity::{VelocityFlags, of_resting};
 use clap::Args;
 use glam::DVec3;
@@ -15,7 +15,7 @@ use terrell::relativity::{ApparentMap, Motion};
 /// Columns out: x,y,z (rest frame), apparent_x,apparent_y,apparent_z (relative to the observer), distance
 /// (apparent, r), doppler (D = ν observed / ν emitted), cos_theta_rest and cos_theta_observer (between the
 /// velocity and observer → point, in the body's rest frame and in the observer's), emission_time (world
-/// frame). 17 significant digits; a field without meaning (angles at rest, D of a point at the observer) is
+/// frame), color_temperature (K: a black body of --temperature is seen as one of D times that). 17 significant digits; a field without meaning (angles at rest, D of a point at the observer) is
 /// empty.
 #[derive(Args)]
 #[command(after_help = "Examples:
@@ -31,6 +31,9 @@ pub struct Locate {
     /// The observer's event
     #[arg(long, value_name = "T,X,Y,Z", value_parser = event, default_value = "0,0,0,0")]
     observer: Event<World>,
+    /// Temperature of a black body at the point, K
+    #[arg(long, value_name = "K", value_parser = number, default_value = "6504")]
+    temperature: f64,
     /// From apparent position (relative to the observer) to rest-frame coordinates
     #[arg(long)]
     inverse: bool,
@@ -39,11 +42,13 @@ pub struct Locate {
     points: Vec<DVec3>,
 }
 
-const HEADER: &str =
-    "x,y,z,apparent_x,apparent_y,apparent_z,distance,doppler,cos_theta_rest,cos_theta_observer,emission_time";
+const HEADER: &str = "x,y,z,apparent_x,apparent_y,apparent_z,distance,doppler,cos_theta_rest,cos_theta_observer,emission_time,color_temperature";
 
 impl Locate {
     pub fn run(self) -> Result<(), Fault> {
+        if self.temperature <= 0.0 {
+            return Err(format!("--temperature {} is not above 0 K", self.temperature).into());
+        }
         let speed = self.velocity.speed()?;
         let speed = speed
             .ok_or("a velocity is needed: --beta, --gamma with --direction, --celerity or --rapidity")?;
@@ -100,6 +105,7 @@ impl Locate {
             cosine(sight.cos_theta_rest),
             cosine(sight.cos_theta_observer),
             self.observer.t() - sight.distance,
+            sight.doppler * self.temperature,
         ];
         for (i, field) in fields.into_iter().enumerate() {
             if i > 0 {

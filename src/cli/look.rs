@@ -4,8 +4,11 @@ use super::values::{count, number, size};
 use super::velocity::VelocityFlags;
 use clap::{Args, ValueEnum};
 use terrell::color::Coloring;
+use terrell::exposure::Exposure;
+use terrell::light::DopplerAt;
 use terrell::render::{Options, Raster};
 use terrell::scene::{Projection, Scene, Speed, View};
+use terrell::tone::Tone;
 
 /// What there is to see, and how large: what everything made of a scene has in common.
 #[derive(Args)]
@@ -38,11 +41,94 @@ pub struct LookFlags {
     #[arg(long, value_name = "N", value_parser = count, default_value = "1")]
     samples: u32,
     /// What a pixel shows
-    #[arg(long, value_enum, default_value = "geometry")]
-    color: ColorFlag,
+    #[arg(long, value_enum, default_value = "spectral")]
+    pub color: ColorFlag,
+    /// Where the Doppler factor is worked out
+    #[arg(long, value_name = "WHERE", value_enum, default_value = "pixel")]
+    doppler: DopplerFlag,
+    #[command(flatten)]
+    pub develop: DevelopFlags,
     /// What decides which triangle a pixel sees
     #[arg(long, value_enum, default_value = "cpu")]
     raster: RasterFlag,
+}
+
+/// How light becomes a picture.
+#[derive(Args)]
+#[command(next_help_heading = "Brightness")]
+pub struct DevelopFlags {
+    /// EV (light times two to its power), auto, rest, or for films each [default: auto where brightness goes with the
+    /// shift, else 0]
+    ///
+    /// auto makes all of a picture but one in twenty of its points darker than white; of a film, of frames from all of
+    /// it together, so that nothing flickers. each meters every frame of a film by itself. rest is auto for the same view
+    /// without shifts and beaming. EXR files have the light as it is.
+    #[arg(long, value_name = "EV|auto|rest|each", value_parser = exposure)]
+    exposure: Option<ExposureFlag>,
+    /// Curve from light to what is shown [default: filmic where brightness goes with the shift, else linear]
+    #[arg(long, value_enum)]
+    tone: Option<ToneFlag>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum ExposureFlag {
+    Chosen(Exposure),
+    Each,
+}
+
+fn exposure(text: &str) -> Result<ExposureFlag, String> {
+    Ok(match text.trim() {
+        "auto" => ExposureFlag::Chosen(Exposure::Auto),
+        "rest" => ExposureFlag::Chosen(Exposure::Rest),
+        "each" => ExposureFlag::Each,
+        number => {
+            let ev = self::number(number).ok().filter(|ev| ev.abs() <= 100.0);
+            let ev = ev.ok_or_else(|| {
+                format!("'{number}' is no EV between -100 and 100, and not auto, rest or each")
+            })?;
+            ExposureFlag::Chosen(Exposure::Fixed(ev as f32))
+        }
+    })
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ToneFlag {
+    /// As it is, clipped at white
+    Linear,
+    /// As film: soft shoulders, the brightest colours turn white
+    Filmic,
+    /// By the logarithm, twelve octaves
+    Log,
+}
+
+impl DevelopFlags {
+    /// How the exposure is chosen, and whether for every picture by itself.
+    pub fn exposure(&self, coloring: Coloring) -> (Exposure, bool) {
+        match self.exposure {
+            Some(ExposureFlag::Chosen(exposure)) => (exposure, false),
+            Some(ExposureFlag::Each) => (Exposure::Auto, true),
+            None => (Exposure::usual(coloring), false),
+        }
+    }
+
+    /// The curve.
+    pub fn tone(&self, coloring: Coloring) -> Tone {
+        match self.tone {
+            Some(ToneFlag::Linear) => Tone::Linear,
+            Some(ToneFlag::Filmic) => Tone::Filmic,
+            Some(ToneFlag::Log) => Tone::Log,
+            None if coloring.is_beamed() => Tone::Filmic,
+            None => Tone::Linear,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum DopplerFlag {
+    /// Exactly, in every pixel
+    Pixel,
+    /// At the vertices drawn, interpolated between, as in Nollert et al. 2000
+    Vertex,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -57,7 +143,13 @@ enum CameraFlag {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub(super) enum ColorFlag {
-    /// The meshes' own colours, without shift and beaming
+    /// What the eye sees: spectra shifted and beamed
+    Spectral,
+    /// Every spectrum taken for flat: colours stay, brightness goes with D³
+    Flat,
+    /// Radiance over all wavelengths, grey: D⁴
+    Bolometric,
+    /// Surfaces' own colours, without shift and beaming
     Geometry,
     /// The Doppler factor in false colour: white 1, blue above, red below
     Doppler,
@@ -80,6 +172,10 @@ impl LookFlags {
             tolerance: self.tolerance,
             samples: self.samples,
             coloring: self.color.coloring(),
+            doppler_at: match self.doppler {
+                DopplerFlag::Pixel => DopplerAt::Pixel,
+                DopplerFlag::Vertex => DopplerAt::Vertex,
+            },
             raster: match self.raster {
                 RasterFlag::Cpu => Raster::Cpu,
                 RasterFlag::Skia => Raster::Skia,
@@ -122,6 +218,9 @@ impl SceneFlags {
 impl ColorFlag {
     pub fn coloring(self) -> Coloring {
         match self {
+            Self::Spectral => Coloring::Spectral,
+            Self::Flat => Coloring::Flat,
+            Self::Bolometric => Coloring::Bolometric,
             Self::Geometry => Coloring::Geometry,
             Self::Doppler => Coloring::Doppler,
         }

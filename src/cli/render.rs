@@ -12,9 +12,11 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use terrell::drawing::Shot;
 use terrell::film::Film;
+use terrell::light::Shading;
 use terrell::picture::{self, Format};
-use terrell::render::{Options, Raster, Report, Step, render};
+use terrell::render::{Options, Raster, Report, Step, render_again};
 use terrell::scene::{Camera, Scene};
+use terrell::tone::Development;
 
 /// One picture of a scene
 ///
@@ -62,21 +64,41 @@ impl Render {
         drawing::check_format(&overlay, &output)?;
         let read = start.elapsed();
         let mut progress = Progress::new(self.report.quiet);
-        let (film, report) = render(&scene, &camera, &options, |step| progress.show(&scene, step))?;
+        let coloring = options.coloring;
+        scene.notes.extend(summary::light_notes(&scene, coloring));
+        let mut film = Film::new(0, 0);
+        let shading = options.shading(&scene, [&camera])?;
+        let tables = start.elapsed() - read;
+        let report =
+            render_again(&scene, &camera, &options, &shading, &mut film, |step| progress.show(&scene, step))?;
         progress.clear();
+        let (exposure, _) = self.look.develop.exposure(coloring);
+        let tone = self.look.develop.tone(coloring);
+        let development = exposure.of_picture(tone, &scene, &camera, &options, &film)?;
         let before_writing = start.elapsed();
         let picture = match &overlay {
             Some(overlay) => {
-                let shot = Shot { scene: &scene, camera: &camera, film: &film, tolerance: options.tolerance };
+                let tolerance = options.tolerance;
+                let shot =
+                    Shot { scene: &scene, camera: &camera, film: &film, tolerance, coloring, development };
                 let (picture, notes) = drawing::prepare(overlay, &shot, &output)?;
                 scene.notes.extend(notes);
                 picture
             }
-            None => picture::prepare_picture(&film, &output)?,
+            None => picture::prepare_picture(&film, &development, &output)?,
         };
-        let times = Times { read, write: start.elapsed() - before_writing, whole: start.elapsed() };
-        let done =
-            Done { scene: &scene, camera: &camera, options: &options, film: &film, report, output, times };
+        let times = Times { read, tables, write: start.elapsed() - before_writing, whole: start.elapsed() };
+        let done = Done {
+            scene: &scene,
+            camera: &camera,
+            options: &options,
+            film: &film,
+            shading: &shading,
+            development,
+            report,
+            output,
+            times,
+        };
         let summary = done.summary();
         self.report.finish(vec![picture], &scene.files, &summary)?;
         self.report.tell(&done.line(), &summary)
@@ -131,6 +153,7 @@ impl Progress {
 
 struct Times {
     read: Duration,
+    tables: Duration,
     write: Duration,
     whole: Duration,
 }
@@ -141,6 +164,8 @@ struct Done<'a> {
     camera: &'a Camera,
     options: &'a Options,
     film: &'a Film,
+    shading: &'a Shading,
+    development: Development,
     report: Report,
     output: PathBuf,
     times: Times,
@@ -150,7 +175,7 @@ impl Done<'_> {
     fn line(&self) -> String {
         let bodies = summary::bodies_in_words(&summary::gammas(self.scene, self.camera));
         let mut line = format!(
-            "{}: {}x{} {}, flat spacetime, {bodies}: apparent shading on the CPU{}, {} triangles cut into {} for {} px, {:.0} ms\n",
+            "{}: {}x{} {}, flat spacetime, {bodies}: apparent shading on the CPU{}, {} triangles cut into {} for {} px, {}, {:.0} ms\n",
             self.output.display(),
             self.film.width,
             self.film.height,
@@ -162,10 +187,16 @@ impl Done<'_> {
             self.report.triangles,
             self.report.pieces,
             self.options.tolerance,
+            summary::colors_in_words(self.options.coloring, &self.development),
             1e3 * self.times.whole.as_secs_f64()
         );
         if self.film.covered() == 0 {
             line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
+        }
+        let brightest = self.film.color.iter().flatten().copied().fold(0.0, f32::max);
+        // The least light that is not black in a PNG.
+        if self.film.covered() > 0 && brightest * self.development.ev.exp2() < 1.5e-4 {
+            line.push_str("note: all of it is too dark to be seen; try --color geometry or doppler, or another --exposure\n");
         }
         for note in &self.scene.notes {
             line.push_str(&format!("note: {note}\n"));
@@ -174,7 +205,7 @@ impl Done<'_> {
     }
 
     fn summary(&self) -> serde_json::Value {
-        let Self { scene, camera, options, film, report, output, times } = self;
+        let Self { scene, camera, options, film, shading, development, report, output, times } = self;
         let doppler = film.doppler.iter().zip(&film.body).filter(|(_, b)| **b >= 0).map(|(d, _)| [*d, *d]);
         json!({
             "terrell": env!("CARGO_PKG_VERSION"),
@@ -184,18 +215,23 @@ impl Done<'_> {
             "method": "apparent",
             "raster": summary::raster(options.raster),
             "threads": rayon::current_num_threads(),
-            "color": summary::color(options.coloring),
+            "color": options.coloring.to_string(),
+            "doppler_at": summary::doppler_at(options.doppler_at),
+            "exposure_ev": development.ev,
+            "tone": development.tone.to_string(),
+            "spectra": summary::spectra(shading),
             "tolerance_px": options.tolerance,
             "samples": options.samples,
             "camera": summary::camera(camera),
             "bodies": summary::bodies(scene, camera),
-            "lamps": summary::lamps(scene),
+            "lights": summary::lights(scene),
             "triangles": report.triangles,
             "pieces": report.pieces,
             "pixels_covered": film.covered(),
             "doppler_range": doppler.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
             "seconds": {
                 "reading": times.read.as_secs_f64(),
+                "tables_of_colors": times.tables.as_secs_f64(),
                 "mapping_and_cutting": report.subdivision.as_secs_f64(),
                 "shading": report.shading.as_secs_f64(),
                 "writing": times.write.as_secs_f64(),

@@ -2,10 +2,12 @@ use super::Fault;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::picture;
 use terrell::render::{Options, render};
 use terrell::scene::{Builtin, builtin_scene, builtin_scenes};
+use terrell::tone::Development;
 
 /// List the scenes that ship, draw them all, or print one as TOML to start from
 #[derive(Args)]
@@ -50,7 +52,9 @@ fn draw_all(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
     std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
     let path = |scene: &Builtin| folder.join(format!("{}.png", scene.name));
     let paths: Vec<_> = builtin_scenes().iter().map(path).collect();
-    let pictures = films.iter().zip(&paths).map(|(film, path)| picture::prepare_picture(film, path));
+    let development = Development::default();
+    let pictures = films.iter().zip(&paths);
+    let pictures = pictures.map(|(film, path)| picture::prepare_picture(film, &development, path));
     // All or none.
     let pictures = pictures.collect::<Result<Vec<_>, _>>()?;
     for picture in pictures {
@@ -62,6 +66,7 @@ fn draw_all(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
 fn draw(scene: &Builtin) -> Result<Film, Fault> {
     let mut scene = scene.scene();
     scene.view.size = [320, 180];
-    let options = Options { samples: 9, ..Options::default() };
+    // Shapes: some are too dark to be recognised as they are seen.
+    let options = Options { samples: 9, coloring: Coloring::Geometry, ..Options::default() };
     Ok(render(&scene, &scene.camera()?, &options, |_| ())?.0)
 }

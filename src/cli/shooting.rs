@@ -4,9 +4,11 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use terrell::drawing::{Overlay, Shot};
 use terrell::film::Film;
+use terrell::light::Shading;
 use terrell::picture::{self, FrameFolder, Movie, MovieFormat};
 use terrell::render::{Options, render_again};
 use terrell::scene::{Animation, Camera, Scene};
+use terrell::tone::Development;
 
 /// Columns between pictures that stand side by side, and their grey.
 const GAP: u32 = 2;
@@ -17,6 +19,9 @@ pub struct Panel {
     pub scene: Scene,
     pub cameras: Vec<Camera>,
     pub overlay: Option<Overlay>,
+    /// Made once for all frames.
+    pub shading: Shading,
+    pub development: Development,
 }
 
 /// A scene on its way to frames: side by side what is to be seen side by side.
@@ -63,6 +68,8 @@ struct Frame {
 pub struct Shooting<'a> {
     pub takes: &'a [Take],
     pub options: &'a Options,
+    /// Whether every frame is metered by itself.
+    pub each_metered: bool,
     pub size: [u32; 2],
     pub bar: ProgressBar,
     pub tally: Tally,
@@ -123,8 +130,9 @@ impl Shooting<'_> {
         let mut films: Vec<Film> = Vec::new();
         let mut index = 0;
         for take in self.takes {
-            let look = format!("{} {:?}", env!("CARGO_PKG_VERSION"), self.options);
-            let scenes = take.panels.iter().map(|p| (p.scene.fingerprint(), &p.overlay));
+            let look = format!("{} {:?} {}", env!("CARGO_PKG_VERSION"), self.options, self.each_metered);
+            let scenes =
+                take.panels.iter().map(|p| (p.scene.fingerprint().with_value(&p.development), &p.overlay));
             let looks: Vec<_> = scenes
                 .map(|(scene, overlay)| {
                     scene.with_value(&look).with_value(&overlay.as_ref().map(Overlay::options))
@@ -172,16 +180,21 @@ impl Shooting<'_> {
         let mut pictures = Vec::new();
         let film_width = take.panels[0].scene.view.size[0] as usize;
         for (panel, film) in take.panels.iter().zip(films) {
-            let Panel { scene, cameras, overlay } = panel;
-            let report = render_again(scene, &cameras[i], self.options, film, |_| ())?;
+            let Panel { scene, cameras, overlay, shading, development } = panel;
+            let report = render_again(scene, &cameras[i], self.options, shading, film, |_| ())?;
             self.tally.pieces += report.pieces;
             self.tally.mapping += report.subdivision;
             self.tally.shading += report.shading;
             let start = Instant::now();
-            let mut pixels = picture::pixels_srgb(film);
+            let mut development = *development;
+            if self.each_metered {
+                development.ev = development.tone.metered(film.color.iter().copied());
+            }
+            let mut pixels = picture::pixels_srgb(film, &development);
             if let Some(overlay) = overlay {
                 let tolerance = self.options.tolerance;
-                let shot = Shot { scene, camera: &cameras[i], film, tolerance };
+                let coloring = shading.coloring();
+                let shot = Shot { scene, camera: &cameras[i], film, tolerance, coloring, development };
                 for note in overlay.draw(&mut pixels, &shot) {
                     if !self.notes.contains(&note) {
                         self.notes.push(note);

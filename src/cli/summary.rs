@@ -3,9 +3,11 @@
 use serde_json::{Value, json};
 use terrell::color::Coloring;
 use terrell::geodesic::{Event, World};
+use terrell::light::{DopplerAt, Shading, TableInfo, has_near_lights};
 use terrell::relativity::ApparentMap;
 use terrell::render::Raster;
-use terrell::scene::{Body, Camera, Scene};
+use terrell::scene::{Body, Camera, Light, Scene};
+use terrell::tone::Development;
 
 /// Relative γ of every body and the camera.
 pub fn gammas(scene: &Scene, camera: &Camera) -> Vec<f64> {
@@ -53,18 +55,52 @@ pub fn bodies(scene: &Scene, camera: &Camera) -> Value {
     scene.bodies.iter().zip(gammas(scene, camera)).map(body).collect()
 }
 
-pub fn lamps(scene: &Scene) -> Value {
-    scene
-        .lamps
-        .iter()
-        .map(|lamp| json!({ "name": lamp.name, "color": lamp.color, "intensity": lamp.intensity }))
-        .collect()
+pub fn lights(scene: &Scene) -> Value {
+    let light = |light: &Light| {
+        json!({
+            "name": light.name,
+            "kind": light.kind.to_string(),
+            "color": light.color,
+            "spectrum": light.spectrum.shape.describe(),
+            "strength": light.strength,
+            "celerity": light.motion.celerity.vector().to_array(),
+        })
+    };
+    scene.lights.iter().map(light).collect()
 }
 
-pub fn color(coloring: Coloring) -> &'static str {
-    match coloring {
-        Coloring::Geometry => "geometry",
-        Coloring::Doppler => "doppler",
+/// The tables of colours under a shift: of what, what is assumed outside the visible, and how exact.
+pub fn spectra(shading: &Shading) -> Value {
+    let table = |table: &TableInfo| {
+        json!({
+            "spectrum": table.spectrum,
+            "beyond_visible": table.beyond.to_string(),
+            "nodes": table.nodes,
+            "greatest_error": table.error,
+        })
+    };
+    shading.tables().iter().map(table).collect()
+}
+
+/// What is not drawn of a scene's light, for people to read.
+pub fn light_notes(scene: &Scene, coloring: Coloring) -> Option<String> {
+    (coloring != Coloring::Doppler && has_near_lights(scene)).then(|| {
+        "the lights' shadows and what surfaces throw on each other need ray tracing; it is shaded without them".to_owned()
+    })
+}
+
+/// "spectral colour, +1.25 EV, filmic".
+pub fn colors_in_words(coloring: Coloring, development: &Development) -> String {
+    let plain = *development == Development::default();
+    let exposed =
+        if plain { String::new() } else { format!(" at {:+.2} EV, {}", development.ev, development.tone) };
+    format!("{coloring} colour{exposed}")
+}
+
+pub fn doppler_at(doppler_at: DopplerAt) -> &'static str {
+    match doppler_at {
+        DopplerAt::Pixel => "pixel",
+        DopplerAt::Vertex => "vertex",
     }
 }
 

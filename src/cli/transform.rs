@@ -50,6 +50,9 @@ pub struct Transform {
     /// What the colours are
     #[arg(long, value_enum, default_value = "geometry")]
     color: ColorFlag,
+    /// EV of colours that are as seen (light times two to its power) [default: so that the brightest are white]
+    #[arg(long, value_name = "EV", value_parser = number)]
+    exposure: Option<f64>,
     /// Write how the shape changes, as an animation (.glb only)
     #[arg(long, requires = "time")]
     animation: bool,
@@ -116,6 +119,7 @@ impl Transform {
                 FrameFlag::Camera => Axes::Camera,
             },
             coloring: self.color.coloring(),
+            ev: self.exposure.map(|ev| ev.clamp(-100.0, 100.0) as f32),
             ..Options::default()
         };
         let camera = Camera { observer: observers[0], ..camera };
@@ -244,7 +248,8 @@ impl Done<'_> {
             "files": self.files,
             "spacetime": "flat",
             "frame": self.axes(),
-            "color": summary::color(self.options.coloring),
+            "color": self.options.coloring.to_string(),
+            "exposure_ev": self.report.ev,
             "tolerance": self.report.tolerance,
             "camera": summary::camera(self.camera),
             "bodies": summary::bodies(self.scene, self.camera),

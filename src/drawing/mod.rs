@@ -1,5 +1,5 @@
 //! What is two-dimensional, on top of a finished picture: a mesh's edges as the curves they look like, captions,
-//! the axes, a scale bar.
+//! the axes, a scale bar, a legend.
 //!
 //! All of it is drawn on 8-bit sRGB, after the film's light has become colour; the film only says what hides what.
 //! Sizes of letters and lines go with the picture's height.
@@ -8,6 +8,7 @@ mod axes;
 mod canvas;
 mod caption;
 mod curves;
+mod legend;
 mod mesh_edges;
 mod number;
 mod overlay;

@@ -25,6 +25,12 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
     if zero { text.replace('-', "") } else { text.replace('-', "−") }
 }
 
+/// As [`fixed`], with a sign always.
+pub(super) fn signed(value: f64, decimals: usize) -> String {
+    let text = fixed(value, decimals);
+    if text.starts_with('−') { text } else { format!("+{text}") }
+}
+
 /// Without zeros at the end of decimals.
 pub(super) fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
@@ -64,5 +70,7 @@ mod tests {
         }
         assert_eq!(fixed(-0.001, 2), "0.00");
         assert_eq!(fixed(-1.5, 3), "−1.500");
+        assert_eq!(signed(1.5, 2), "+1.50");
+        assert_eq!(signed(-1.5, 2), "−1.50");
     }
 }

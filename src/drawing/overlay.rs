@@ -2,11 +2,13 @@ use super::canvas::{Canvas, LIGHT, polylines};
 use super::curves::Curves;
 use super::mesh_edges::MeshEdges;
 use super::scale_bar::ScaleBar;
-use super::{Caption, Edges, axes, caption};
+use super::{Caption, Edges, axes, caption, legend};
 use crate::apparent::Field;
+use crate::color::Coloring;
 use crate::film::Film;
 use crate::relativity::ApparentMap;
 use crate::scene::{Camera, Mesh, Projection, Scene};
+use crate::tone::Development;
 use glam::DVec2;
 use std::sync::Arc;
 
@@ -21,6 +23,8 @@ pub struct OverlayOptions {
     /// sight, in the middle of the picture, at the apparent distance of what is seen there (or, if nothing is, of
     /// the nearest body whose middle is in the picture); the distance is written beside it.
     pub scale_bar: bool,
+    /// Exposure and tone curve, or the scale of false colours, at the upper right.
+    pub legend: bool,
     /// Text at the lower left.
     pub caption: Option<Caption>,
 }
@@ -48,6 +52,10 @@ pub struct Shot<'a> {
     pub film: &'a Film,
     /// How far the film's outlines may be from where they belong, in pixels: the tolerance it was drawn with.
     pub tolerance: f64,
+    /// What its colours are.
+    pub coloring: Coloring,
+    /// How they became a picture.
+    pub development: Development,
 }
 
 /// Edges' width over that of other lines.
@@ -105,6 +113,9 @@ impl Overlay {
         }
         if self.options.axes {
             axes::draw(&mut canvas, shot.scene, shot.camera);
+        }
+        if self.options.legend {
+            legend::draw(&mut canvas, shot);
         }
         let mut room = canvas.width() - 2.0 * canvas.margin();
         if self.options.scale_bar {

@@ -97,8 +97,10 @@ fn nearest_middle(shot: &Shot<'_>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Coloring;
     use crate::film::Film;
-    use crate::scene::builtin_scenes;
+    use crate::scene::{Camera, Scene, builtin_scenes};
+    use crate::tone::Development;
 
     #[test]
     fn the_bar_is_what_a_ruler_there_would_be() {
@@ -124,7 +126,11 @@ mod tests {
         let scene = builtin_scenes()[0].scene();
         let camera = scene.camera().unwrap();
         let mut film = Film::new(1280, 720);
-        let of = |film: &Film| ScaleBar::of(&Shot { scene: &scene, camera: &camera, film, tolerance: 0.25 });
+        fn shot<'a>(scene: &'a Scene, camera: &'a Camera, film: &'a Film) -> Shot<'a> {
+            let (coloring, development) = (Coloring::Geometry, Development::default());
+            Shot { scene, camera, film, tolerance: 0.25, coloring, development }
+        }
+        let of = |film: &Film| ScaleBar::of(&shot(&scene, &camera, film));
         // Its centre is seen abreast at a distance of 3.
         assert!((of(&film).unwrap().distance - 3.0).abs() < 1e-12);
         assert_eq!(of(&film).unwrap().label(), "0.5 at distance 3");
@@ -134,6 +140,6 @@ mod tests {
         away.view.set_time(100.0).unwrap();
         let camera = away.camera().unwrap();
         let film = Film::new(1280, 720);
-        assert_eq!(ScaleBar::of(&Shot { scene: &away, camera: &camera, film: &film, tolerance: 0.25 }), None);
+        assert_eq!(ScaleBar::of(&shot(&away, &camera, &film)), None);
     }
 }

@@ -1,8 +1,8 @@
 //! Binary glTF 2.0: one file, frames of an animation as morph targets.
 
 use super::files::{Pictures, file_of, is_png};
-use super::{ExportError, Eye, Frame, Model, Surface};
-use crate::scene::{Material, Texture, Wrap};
+use super::{ExportError, Eye, Frame, Model};
+use crate::scene::{Material, Surface, Texture, Wrap};
 use glam::{DMat3, DQuat, DVec3};
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -194,7 +194,7 @@ impl Glb {
         frame.positions.iter().map(|p| (*p - self.origin).as_vec3().to_array()).collect()
     }
 
-    fn primitive(&mut self, surface: &Surface) -> Value {
+    fn primitive(&mut self, surface: &super::Surface) -> Value {
         let first = surface.first();
         let positions = self.positions(first);
         let mut attributes = json!({ "POSITION": self.floats(&positions, Some(ARRAY), true) });
@@ -271,7 +271,7 @@ impl Glb {
                 );
             }
         }
-        if material.unlit {
+        if material.surface == Surface::Luminous {
             extensions.insert(self.extension("KHR_materials_unlit"), json!({}));
         }
         if !extensions.is_empty() {

@@ -1,5 +1,6 @@
 use super::{write_exr, write_png};
 use crate::film::Film;
+use crate::tone::Development;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -171,13 +172,14 @@ impl Pending {
     }
 }
 
-/// Writes the film in the format of the file's ending, to be [finished](Pending::finish).
+/// Writes the film in the format of the file's ending, to be [finished](Pending::finish); an EXR has the light as it is,
+/// undeveloped.
 ///
 /// # Errors
 /// On an unknown ending, or if the file cannot be written.
-pub fn prepare_picture(film: &Film, path: &Path) -> Result<Pending, WriteError> {
+pub fn prepare_picture(film: &Film, development: &Development, path: &Path) -> Result<Pending, WriteError> {
     match Format::of(path)? {
-        Format::Png => prepare(path, |to| write_png(film, to)),
+        Format::Png => prepare(path, |to| write_png(film, development, to)),
         Format::Exr => {
             // The writer goes back and forth, which not everything that can be written to allows.
             let mut bytes = std::io::Cursor::new(Vec::new());
@@ -187,10 +189,10 @@ pub fn prepare_picture(film: &Film, path: &Path) -> Result<Pending, WriteError> 
     }
 }
 
-/// Writes the film in the format of the file's ending, whole or not at all.
+/// As [`prepare_picture`], whole or not at all.
 ///
 /// # Errors
 /// On an unknown ending, or if the file cannot be written.
-pub fn write(film: &Film, path: &Path) -> Result<(), WriteError> {
-    prepare_picture(film, path)?.finish()
+pub fn write(film: &Film, development: &Development, path: &Path) -> Result<(), WriteError> {
+    prepare_picture(film, development, path)?.finish()
 }

@@ -1,15 +1,16 @@
 use crate::color::encoded;
 use crate::film::Film;
+use crate::tone::Development;
 use rayon::prelude::*;
 use std::io::Write;
 
-/// The film as 8-bit sRGB, three bytes a pixel: clipped to 0…1 and encoded (IEC 61966-2-1).
-pub fn pixels_srgb(film: &Film) -> Vec<u8> {
+/// The film as 8-bit sRGB, three bytes a pixel: developed, clipped to 0…1 and encoded (IEC 61966-2-1).
+pub fn pixels_srgb(film: &Film, development: &Development) -> Vec<u8> {
     let mut pixels = vec![0; 3 * film.color.len()];
     let block = 3 * 4096;
     pixels.par_chunks_mut(block).zip(film.color.par_chunks(block / 3)).for_each(|(pixels, colors)| {
         for (pixel, color) in pixels.chunks_exact_mut(3).zip(colors) {
-            pixel.copy_from_slice(&color.map(encoded));
+            pixel.copy_from_slice(&development.shown(*color).map(encoded));
         }
     });
     pixels
@@ -19,8 +20,8 @@ pub fn pixels_srgb(film: &Film) -> Vec<u8> {
 ///
 /// # Errors
 /// If the writer fails.
-pub fn write_png(film: &Film, to: impl Write) -> std::io::Result<()> {
-    write_png_pixels(film.width, film.height, &pixels_srgb(film), to)
+pub fn write_png(film: &Film, development: &Development, to: impl Write) -> std::io::Result<()> {
+    write_png_pixels(film.width, film.height, &pixels_srgb(film, development), to)
 }
 
 /// Writes 8-bit sRGB, three bytes a pixel, as a PNG.

@@ -1,9 +1,9 @@
 use super::bins::{Binned, Bins};
 use super::triangle::{HalfPlane, Linear, Planes, Surface, owns_boundary};
 use super::{BAND, Drawable, Samples};
-use crate::color::Coloring;
+use crate::light::{DopplerAt, Point, SeenShading};
 use crate::relativity::RestSky;
-use crate::scene::{Lens, Material, Projection};
+use crate::scene::{Colors, Lens, Material, Projection};
 use glam::{DVec2, DVec3};
 
 /// The film's rows to fill.
@@ -112,7 +112,7 @@ impl Band {
         bins: &Bins,
         lens: &Lens,
         samples: &Samples,
-        coloring: Coloring,
+        shading: &SeenShading<'_>,
         top: u32,
         mut rows: Rows<'_>,
     ) {
@@ -125,7 +125,7 @@ impl Band {
             self.clear(&sampling, rows.color.len());
             self.rasterise(&stage, &columns, &sampling);
             // The first sample is the pixel's centre.
-            self.develop(&stage, coloring, &sampling, weight, index == 0, &mut rows);
+            self.develop(&stage, shading, &sampling, weight, index == 0, &mut rows);
         }
     }
 
@@ -139,7 +139,7 @@ impl Band {
         lens: &Lens,
         samples: &Samples,
         index: usize,
-        coloring: Coloring,
+        shading: &SeenShading<'_>,
         top: u32,
         number: impl Fn(usize) -> Option<u32>,
         mut rows: Rows<'_>,
@@ -153,7 +153,7 @@ impl Band {
             *triangle = if is_sky { number(i).unwrap_or(NONE) } else { NONE };
         }
         let weight = 1.0 / samples.0.len() as f32;
-        self.develop(&stage, coloring, &sampling, weight, index == 0, &mut rows);
+        self.develop(&stage, shading, &sampling, weight, index == 0, &mut rows);
     }
 
     fn clear(&mut self, sampling: &Sampling<'_>, pixels: usize) {
@@ -353,7 +353,7 @@ impl Band {
     fn develop(
         &self,
         stage: &Stage<'_>,
-        coloring: Coloring,
+        shading: &SeenShading<'_>,
         sampling: &Sampling<'_>,
         weight: f32,
         centre: bool,
@@ -380,15 +380,23 @@ impl Band {
                 let length = self.lengths[i];
                 let rest = seen.sky.boosted(direction, length);
                 let nearness = seen.surface.nearness(direction, length, rest.along);
-                let doppler = length / rest.length;
+                let doppler = match shading.doppler_at() {
+                    DopplerAt::Pixel => length / rest.length,
+                    DopplerAt::Vertex => seen.doppler_of_vertices(direction),
+                };
                 let neighbours = || {
                     // A look along the line of sight itself where there is no neighbour: as sharp as can be.
                     let to =
                         |dx, dy| sampling.towards(x, line, dx * spread, dy * spread).unwrap_or(direction);
                     [to(1.0, 0.0), to(0.0, 1.0)]
                 };
-                let own = || seen.own_color(direction, rest.along, nearness, neighbours);
-                let light = coloring.light(own, doppler);
+                let light = shading.radiance(
+                    seen.drawable.body,
+                    seen.drawable.mesh.material_index(seen.face),
+                    doppler,
+                    || seen.colors(direction, rest.along, nearness, neighbours),
+                    || seen.point(direction, rest.along, nearness),
+                );
                 let color = &mut rows.color[i];
                 *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
                 if centre {
@@ -409,6 +417,8 @@ struct Seen<'a> {
     face: usize,
     /// Corners from the observer, rest frame.
     rest: [DVec3; 3],
+    /// Corners of the piece, as it is seen.
+    corners: [DVec3; 3],
     surface: Surface,
 }
 
@@ -420,7 +430,7 @@ impl<'a> Seen<'a> {
         let corners = piece.corners.map(|v| seen.vertices[v as usize]);
         let rest = mesh.corners(face).map(|v| map.offset_rest(v));
         let surface = Surface::new(map, sky, rest, corners, &Planes::new(corners)?);
-        Some(Self { drawable, sky, face, rest, surface })
+        Some(Self { drawable, sky, face, rest, corners, surface })
     }
 
     /// Barycentric coordinates of the point a line of sight meets; negative beside the triangle.
@@ -453,29 +463,58 @@ impl<'a> Seen<'a> {
         Some(length / self.drawable.map.see(point).distance)
     }
 
-    /// The mesh's own colour at the point a line of sight meets; `neighbours` gives the lines of sight one pixel
+    /// The Doppler factors of the piece's corners, interpolated to where a line of sight meets it.
+    fn doppler_of_vertices(&self, v: DVec3) -> f64 {
+        let [a, b, c] = self.corners;
+        // Beside its outline as at it.
+        let flip = if a.dot(b.cross(c)) < 0.0 { -1.0 } else { 1.0 };
+        let weights = clamped([b.cross(c), c.cross(a), a.cross(b)].map(|edge| flip * edge.dot(v)));
+        let doppler = self.corners.map(|v| {
+            let length = v.length();
+            length / self.sky.boosted(v, length).length
+        });
+        weights[0] * doppler[0] + weights[1] * doppler[1] + weights[2] * doppler[2]
+    }
+
+    /// The point a line of sight meets, with its normal.
+    fn point(&self, v: DVec3, rest_along: f64, nearness: f64) -> Point {
+        let offset = self.rest_direction(v, rest_along) / nearness;
+        let [a, b, c] = self.rest;
+        let facing = (b - a).cross(c - a);
+        let normals = &self.drawable.mesh.normals;
+        if normals.is_empty() {
+            return Point::new(offset, facing, facing);
+        }
+        let weights = clamped(self.weights(v, rest_along, nearness));
+        let corners = self.drawable.mesh.triangles[self.face];
+        let normal = |v: u32| DVec3::from_array(normals[v as usize].map(f64::from));
+        let normal = (0..3).map(|i| weights[i] * normal(corners[i])).sum::<DVec3>();
+        Point::new(offset, facing, if normal == DVec3::ZERO { facing } else { normal })
+    }
+
+    /// The surface's colours at the point a line of sight meets; `neighbours` gives the lines of sight one pixel
     /// to the right and below.
     #[inline]
-    fn own_color(
+    fn colors(
         &self,
         v: DVec3,
         rest_along: f64,
         nearness: f64,
         neighbours: impl FnOnce() -> [DVec3; 2],
-    ) -> [f32; 3] {
+    ) -> Colors {
         let mesh = self.drawable.mesh;
         let textured = mesh.material_of(self.face).is_some_and(Material::is_textured);
         if mesh.paint.is_of_faces() && !textured {
-            return mesh.color(self.face, [1.0, 0.0, 0.0], |_| [1.0; 3]);
+            return mesh.colors(self.face, [1.0, 0.0, 0.0], |_| [1.0; 3]);
         }
         let weights = clamped(self.weights(v, rest_along, nearness));
         if !textured {
-            return mesh.color(self.face, weights, |_| [1.0; 3]);
+            return mesh.colors(self.face, weights, |_| [1.0; 3]);
         }
         let corner_uv = mesh.corner_uv(self.face).unwrap_or_default();
         let mix = |w: [f64; 3]| w[0] * corner_uv[0] + w[1] * corner_uv[1] + w[2] * corner_uv[2];
         let (uv, step) = (mix(weights), self.changes(v, weights, neighbours()).map(mix));
-        mesh.color(self.face, weights, |texture| texture.at(uv, step))
+        mesh.colors(self.face, weights, |texture| texture.at(uv, step))
     }
 
     /// How barycentric coordinates change to the two neighbouring lines of sight.

@@ -14,8 +14,8 @@ mod polygon;
 mod triangle;
 
 use crate::apparent::ApparentMesh;
-use crate::color::Coloring;
 use crate::film::Film;
+use crate::light::SeenShading;
 use crate::relativity::ApparentMap;
 use crate::scene::{Lens, Mesh};
 use band::Band;
@@ -25,7 +25,7 @@ use rayon::prelude::*;
 /// A body ready to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawable<'a> {
-    /// Index of the body in the scene.
+    /// Index of the body in the scene, and in the shading.
     pub body: usize,
     /// The mesh at rest, for its colours.
     pub mesh: &'a Mesh,
@@ -65,10 +65,10 @@ impl Samples {
 /// Rows drawn as one task.
 const BAND: u32 = 16;
 
-/// Draws apparent meshes on a new film.
-pub fn shade(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, coloring: Coloring) -> Film {
+/// Draws apparent meshes on a new film; `shading` is for the same observer.
+pub fn shade(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, shading: &SeenShading<'_>) -> Film {
     let mut film = Film::new(lens.width(), lens.height());
-    draw(bodies, lens, samples, coloring, &mut film);
+    draw(bodies, lens, samples, shading, &mut film);
     film
 }
 
@@ -77,16 +77,16 @@ pub fn shade_again(
     bodies: &[Drawable<'_>],
     lens: &Lens,
     samples: &Samples,
-    coloring: Coloring,
+    shading: &SeenShading<'_>,
     film: &mut Film,
 ) {
     film.clear(lens.width(), lens.height());
-    draw(bodies, lens, samples, coloring, film);
+    draw(bodies, lens, samples, shading, film);
 }
 
-fn draw(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, coloring: Coloring, film: &mut Film) {
+fn draw(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, shading: &SeenShading<'_>, film: &mut Film) {
     let bins = bins::Bins::new(bodies, lens, samples);
-    each_band(film, |band, top, out| band.draw(bodies, &bins, lens, samples, coloring, top, out));
+    each_band(film, |band, top, out| band.draw(bodies, &bins, lens, samples, shading, top, out));
 }
 
 /// Has the film's rows filled, a band of them a task; with the number of its first row.
@@ -107,9 +107,11 @@ fn each_band(film: &mut Film, fill: impl Fn(&mut Band, u32, band::Rows<'_>) + Sy
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Coloring;
     use crate::film::NOTHING;
+    use crate::light::Shading;
     use crate::relativity::Motion;
-    use crate::scene::{Paint, Projection};
+    use crate::scene::{Body, Paint, Projection, Scene, View};
     use glam::{DVec2, DVec3};
     use proptest::prelude::*;
     use terrell_geodesic::{Event, Tetrad};
@@ -130,12 +132,11 @@ mod tests {
         let observer = Tetrad::of_world(Event::origin());
         let map = ApparentMap::new(&Motion::at_rest(DVec3::ZERO), &observer);
         let seen = ApparentMesh::linear(mesh, &map);
-        shade(
-            &[Drawable { body: 3, mesh, map: &map, seen: &seen }],
-            lens,
-            &Samples::new(samples),
-            Coloring::Geometry,
-        )
+        let body = Body::new("m", mesh.clone(), Motion::at_rest(DVec3::ZERO));
+        let scene = Scene::new("s", vec![body; 4], View::default());
+        let shading = Shading::within(&scene, 0.0, Coloring::Geometry).unwrap();
+        let drawable = Drawable { body: 3, mesh, map: &map, seen: &seen };
+        shade(&[drawable], lens, &Samples::new(samples), &shading.seen_by(&observer))
     }
 
     /// Every pixel against every triangle (Möller and Trumbore 1997), with how surely it hits or misses.
@@ -271,8 +272,11 @@ mod tests {
         let [seen_near, seen_far] = [&near, &far].map(|m| ApparentMesh::linear(m, &map));
         let near = Drawable { body: 0, mesh: &near, map: &map, seen: &seen_near };
         let far = Drawable { body: 1, mesh: &far, map: &map, seen: &seen_far };
+        let body = |mesh: &Mesh| Body::new("m", mesh.clone(), Motion::at_rest(DVec3::ZERO));
+        let scene = Scene::new("s", vec![body(near.mesh), body(far.mesh)], View::default());
+        let shading = Shading::within(&scene, 0.0, Coloring::Geometry).unwrap();
         for order in [[near, far], [far, near]] {
-            let film = shade(&order, &lens(0), &Samples::new(1), Coloring::Geometry);
+            let film = shade(&order, &lens(0), &Samples::new(1), &shading.seen_by(&observer));
             assert_eq!(film.body[21 * 61 + 30], 0);
             assert_eq!(film.distance[21 * 61 + 30], 2.0);
         }

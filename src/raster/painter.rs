@@ -4,8 +4,8 @@ use super::order::{Waiting, back_to_front};
 use super::polygon::{BEYOND, Polygon};
 use super::triangle::{Planes, Surface};
 use super::{Drawable, Samples, each_band};
-use crate::color::Coloring;
 use crate::film::Film;
+use crate::light::SeenShading;
 use crate::relativity::RestSky;
 use crate::scene::Lens;
 use glam::{DVec2, DVec3};
@@ -38,7 +38,7 @@ pub fn paint(
     bodies: &[Drawable<'_>],
     lens: &Lens,
     samples: &Samples,
-    coloring: Coloring,
+    shading: &SeenShading<'_>,
 ) -> Result<Film, TooManyToPaint> {
     let count = bodies.iter().map(|b| b.seen.triangles.len()).sum();
     check_count(count)?;
@@ -63,7 +63,7 @@ pub fn paint(
                 let at = (top as usize + i / width + margin) * stride + i % width + margin;
                 number_of(&painted[4 * at..][..4])
             };
-            band.draw_known(bodies, &bins, lens, samples, index, coloring, top, number, rows);
+            band.draw_known(bodies, &bins, lens, samples, index, shading, top, number, rows);
         });
     }
     Ok(film)

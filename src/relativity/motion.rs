@@ -1,5 +1,5 @@
 use glam::DVec3;
-use terrell_geodesic::{Celerity, Event, Lorentz, Real, Rest, Tetrad, Wide, World};
+use terrell_geodesic::{Celerity, Event, Lamp, Lorentz, Real, Rest, Tetrad, Wide, World};
 
 /// How a body moves: uniformly, its rest-frame origin passing through one event of the world.
 ///
@@ -24,6 +24,11 @@ impl Motion {
 
     /// The map from rest-frame to world components.
     pub fn world_from_rest<S: Real>(&self) -> Lorentz<World, Rest, S> {
+        Lorentz::boost(&self.celerity)
+    }
+
+    /// As [`world_from_rest`](Self::world_from_rest), of a lamp.
+    pub fn world_from_lamp<S: Real>(&self) -> Lorentz<World, Lamp, S> {
         Lorentz::boost(&self.celerity)
     }
 

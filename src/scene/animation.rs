@@ -164,7 +164,9 @@ impl Scene {
     /// also a camera on a path, whose greatest speed is `path`.
     fn standard(&self, path: f64) -> (Self, f64) {
         let mut slow = self.clone();
-        let celerities = slow.bodies.iter().map(|b| &b.motion.celerity).chain([&slow.view.celerity]);
+        let bodies = slow.bodies.iter().map(|b| &b.motion.celerity);
+        let lights = slow.lights.iter().map(|l| &l.motion.celerity);
+        let celerities = bodies.chain(lights).chain([&slow.view.celerity]);
         let fastest = celerities.map(|c| c.beta().length()).fold(path, f64::max);
         if fastest == 0.0 {
             return (slow, 1.0);
@@ -175,6 +177,9 @@ impl Scene {
             if let Some(clip) = &mut body.clip {
                 Arc::make_mut(clip).rate *= factor;
             }
+        }
+        for light in &mut slow.lights {
+            slow_down(&mut light.motion.celerity, &mut light.motion.origin, factor);
         }
         slow_down(&mut slow.view.celerity, &mut slow.view.event, factor);
         (slow, factor)

@@ -18,6 +18,11 @@ pub struct Body {
 }
 
 impl Body {
+    /// A mesh in motion, not animated.
+    pub fn new(name: &str, mesh: impl Into<Arc<Mesh>>, motion: Motion) -> Self {
+        Self { name: name.to_owned(), mesh: mesh.into(), motion, clip: None }
+    }
+
     /// The mesh in the rest frame as an observer sees it: of an animated body, in the pose it had when the light
     /// now seen left its middle.
     pub fn mesh_seen(&self, observer: &Tetrad) -> Arc<Mesh> {

@@ -91,6 +91,20 @@ impl Lens {
         Ok(Self { projection, width, height, focal })
     }
 
+    /// The same field on a picture of at most so many pixels across.
+    pub fn within(&self, across: u32) -> Self {
+        let width = self.width.min(across.max(1));
+        let factor = f64::from(width) / f64::from(self.width);
+        let height = ((f64::from(self.height) * factor).round() as u32).max(1);
+        let factors = DVec2::new(factor, f64::from(height) / f64::from(self.height));
+        // A pinhole's and a fisheye's pixels are square.
+        let focal = match self.projection {
+            Projection::Panorama => self.focal * factors,
+            _ => self.focal * factor,
+        };
+        Self { width, height, focal, ..*self }
+    }
+
     /// Which projection.
     pub fn projection(&self) -> Projection {
         self.projection

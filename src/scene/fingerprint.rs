@@ -65,12 +65,15 @@ impl Scene {
                 out = out.with_value(&(
                     material.base_color,
                     material.emission,
-                    material.unlit,
+                    material.surface,
+                    &material.spectrum,
+                    material.law,
+                    material.gloss,
                     material.one_sided,
                 ));
             }
         }
-        out
+        out.with_value(&self.lights)
     }
 }
 

@@ -49,7 +49,7 @@ pub fn authored(name: &str, imported: Imported, celerity: Option<Celerity>, lens
         None => Scene {
             name: name.to_owned(),
             bodies: imported.parts.into_iter().map(Part::into_body).collect(),
-            lamps: imported.lamps,
+            lights: imported.lights,
             view,
             animation: None,
             files: imported.files,
@@ -71,12 +71,15 @@ fn passing(
     let motion = Motion { celerity, origin: left };
     let to_centre = motion.world_from_rest::<f64>() * FourVector::from_parts(0.0, centre);
     let motion = Motion { celerity, origin: left + (-to_centre) };
-    let imported = imported.settled();
+    let shift = FourVector::from_parts(0.0, view.event.position() + seen - centre);
+    let mut imported = imported.settled();
+    // Lights stay at rest, around the place where the file's middle is seen.
+    imported.lights.iter_mut().for_each(|light| light.motion.origin = light.motion.origin + shift);
     let body = |part: Part| super::Body { motion, ..part.into_body() };
     Scene {
         name: name.to_owned(),
         bodies: imported.parts.into_iter().map(body).collect(),
-        lamps: imported.lamps,
+        lights: imported.lights,
         view,
         animation: None,
         files: imported.files,

@@ -1,24 +1,28 @@
 use crate::relativity::Motion;
+use crate::spectrum::Spectrum;
 use glam::DVec3;
 
-/// A lamp that a file brings. So far it is only known of: surfaces shine by themselves.
+/// What lights a scene from outside its surfaces.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lamp {
-    /// What the file calls it.
+pub struct Light {
+    /// What the scene or the file calls it.
     pub name: String,
     /// Of what kind it is, and where, in its rest frame.
-    pub kind: LampKind,
-    /// Linear sRGB colour.
+    pub kind: LightKind,
+    /// Linear sRGB: a filter before it.
     pub color: [f32; 3],
-    /// Candela, or lux where it is at infinity, as the file says it.
-    pub intensity: f32,
-    /// How it moves.
+    /// Its light before the filter, in its rest frame.
+    pub spectrum: Spectrum,
+    /// How much of that: at infinity, irradiance of what faces it; of a point or a spot, radiant intensity; ambient,
+    /// radiance. An irradiance of π, or a radiance of 1, makes a white matt surface at rest as bright as white.
+    pub strength: f64,
+    /// How it moves; of what is at infinity or everywhere, in which frame it is as it is said to be.
     pub motion: Motion,
 }
 
-/// Kinds of [`Lamp`]s.
+/// Kinds of [`Light`]s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LampKind {
+pub enum LightKind {
     /// At infinity: its light goes this way.
     Distant {
         /// Unit vector.
@@ -38,4 +42,24 @@ pub enum LampKind {
         /// Angles from the axis, radians, where it begins to darken and where it is dark.
         cone: [f32; 2],
     },
+    /// The same from all directions, as within a cloud or a bath of radiation.
+    Ambient,
+}
+
+impl LightKind {
+    /// Whether there is a place it shines from, so that things stand between.
+    pub fn is_near(&self) -> bool {
+        matches!(self, Self::Point { .. } | Self::Spot { .. })
+    }
+}
+
+impl std::fmt::Display for LightKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Distant { .. } => "distant",
+            Self::Point { .. } => "point",
+            Self::Spot { .. } => "spot",
+            Self::Ambient => "ambient",
+        })
+    }
 }

@@ -1,4 +1,4 @@
-use super::{Material, Texture};
+use super::{Colors, Material, Texture};
 use glam::{DVec2, DVec3};
 
 /// A triangle mesh in its rest frame.
@@ -126,7 +126,7 @@ impl Mesh {
     /// What a triangle is made of; none where there is only paint.
     #[inline]
     pub fn material_of(&self, triangle: usize) -> Option<&Material> {
-        self.materials.get(self.material.get(triangle).map_or(0, |m| *m as usize))
+        self.materials.get(self.material_index(triangle))
     }
 
     /// Whether a triangle is seen from its front only.
@@ -143,20 +143,38 @@ impl Mesh {
         Some([a?, b?, c?])
     }
 
-    /// The surface's colour at a point of a triangle, given its barycentric coordinates; `look` gives a texture's
+    /// The surface's colours at a point of a triangle, given its barycentric coordinates; `look` gives a texture's
     /// colour there.
     #[inline]
-    pub fn color(&self, triangle: usize, weights: [f64; 3], look: impl Fn(&Texture) -> [f32; 3]) -> [f32; 3] {
+    pub fn colors(&self, triangle: usize, weights: [f64; 3], look: impl Fn(&Texture) -> [f32; 3]) -> Colors {
         let paint = self.paint.at(triangle, self.triangles[triangle], weights);
-        self.material_of(triangle).map_or(paint, |m| m.color(paint, look))
+        let plain = Colors { base: paint, ..Colors::default() };
+        self.material_of(triangle).map_or(plain, |m| m.colors(paint, look))
+    }
+
+    /// The colour there if it shines by itself.
+    #[inline]
+    pub fn color(&self, triangle: usize, weights: [f64; 3], look: impl Fn(&Texture) -> [f32; 3]) -> [f32; 3] {
+        self.colors(triangle, weights, look).sum()
+    }
+
+    /// Number of a triangle's material among [`materials`](Self::materials); 0 where there is only paint.
+    #[inline]
+    pub fn material_index(&self, triangle: usize) -> usize {
+        self.material.get(triangle).map_or(0, |m| *m as usize)
     }
 
     /// Gives the whole mesh one colour, in place of paint, textures and emission.
     pub fn repaint(&mut self, color: [f32; 3]) {
         self.paint = Paint::Uniform(color);
         for material in &mut self.materials {
-            let Material { name, unlit, one_sided, .. } = std::mem::take(material);
-            *material = Material { name, unlit, one_sided, ..Material::default() };
+            *material = Material {
+                base_color: [1.0; 3],
+                base_texture: None,
+                emission: [0.0; 3],
+                emission_texture: None,
+                ..std::mem::take(material)
+            };
         }
     }
 

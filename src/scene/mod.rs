@@ -9,7 +9,7 @@ mod file;
 mod fingerprint;
 mod framing;
 mod import;
-mod lamp;
+mod light;
 mod material;
 mod mesh;
 mod path;
@@ -26,8 +26,8 @@ pub use file::{SceneError, parse_scene};
 pub use fingerprint::Fingerprint;
 pub use framing::{authored, framed};
 pub use import::{ImportError, Imported, Part, import, import_obj, is_mesh_file, read_plain};
-pub use lamp::{Lamp, LampKind};
-pub use material::Material;
+pub use light::{Light, LightKind};
+pub use material::{Colors, EmissionLaw, Gloss, Material, Surface};
 pub use mesh::{Mesh, MeshError, Paint};
 pub use path::{CameraPath, Key, PathError};
 pub use texture::{MAX_TEXELS, Picture, Texture, Wrap};
@@ -42,8 +42,8 @@ pub struct Scene {
     pub name: String,
     /// In the scene's order.
     pub bodies: Vec<Body>,
-    /// Lamps that files bring.
-    pub lamps: Vec<Lamp>,
+    /// What lights it; where there is nothing, surfaces shine by themselves.
+    pub lights: Vec<Light>,
     /// The camera, before a moment is chosen.
     pub view: View,
     /// How it is filmed, if it says so.
@@ -80,8 +80,8 @@ pub struct TooFast {
 impl Scene {
     /// Bodies and a view, and nothing else.
     pub fn new(name: &str, bodies: Vec<Body>, view: View) -> Self {
-        let (lamps, files, notes) = (Vec::new(), Vec::new(), Vec::new());
-        Self { name: name.to_owned(), bodies, lamps, view, animation: None, files, notes }
+        let (lights, files, notes) = (Vec::new(), Vec::new(), Vec::new());
+        Self { name: name.to_owned(), bodies, lights, view, animation: None, files, notes }
     }
 
     /// The camera at the moment the view asks for.

@@ -40,11 +40,14 @@ pub fn write_scene(json: &Value, folder: &Path) -> std::io::Result<PathBuf> {
         }
         let mut materials = BTreeMap::new();
         let triangles = object["triangles"].as_array().unwrap().iter();
-        for (corners, emission) in triangles.zip(object["emission"].as_array().unwrap()) {
+        // What is lit has an albedo, what shines by itself an emission.
+        let lit = json["lights"].as_array().is_some_and(|lights| !lights.is_empty());
+        let colors = object[if lit { "albedo" } else { "emission" }].as_array().unwrap();
+        for (corners, color) in triangles.zip(colors) {
             let next = materials.len();
-            let material = *materials.entry(emission.to_string()).or_insert_with(|| {
-                let e = emission.as_array().unwrap();
-                writeln!(mtl, "newmtl m{next}\nKd {} {} {}", e[0], e[1], e[2]).unwrap();
+            let material = *materials.entry(color.to_string()).or_insert_with(|| {
+                let c = color.as_array().unwrap();
+                writeln!(mtl, "newmtl m{next}\nKd {} {} {}", c[0], c[1], c[2]).unwrap();
                 next
             });
             let corner = |i: usize| corners[i].as_u64().unwrap() + 1;
@@ -59,6 +62,23 @@ pub fn write_scene(json: &Value, folder: &Path) -> std::io::Result<PathBuf> {
             offset[0].as_f64().unwrap(),
             list(&offset[1..].to_vec().into()),
             list(&object["u"]),
+        )
+        .unwrap();
+    }
+    for light in json["lights"].as_array().into_iter().flatten() {
+        assert_eq!(light["type"], "point");
+        let numbers = |key: &str| -> Vec<f64> {
+            light[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+        };
+        let (strength, u, at, offset) = (numbers("J")[0], numbers("u"), numbers("pos"), numbers("offset"));
+        // The event of the lamp at time 0 of its own frame.
+        let along: f64 = (0..3).map(|i| u[i] * at[i]).sum();
+        let gamma = (1.0 + u.iter().map(|u| u * u).sum::<f64>()).sqrt();
+        let place: Vec<f64> = (0..3).map(|i| offset[i + 1] + at[i] + u[i] * along / (1.0 + gamma)).collect();
+        write!(
+            toml,
+            "\n[[light]]\nkind = \"point\"\nstrength = {strength:?}\ntime = {:?}\nposition = {place:?}\ncelerity = {u:?}\n",
+            offset[0] + along,
         )
         .unwrap();
     }

@@ -37,7 +37,7 @@ mod wide;
 pub use celerity::{Celerity, CelerityError};
 pub use event::{Event, FourVector};
 pub use flat::Flat;
-pub use frame::{Observer, Rest, World};
+pub use frame::{Lamp, Observer, Rest, World};
 pub use lorentz::Lorentz;
 pub use real::Real;
 pub use spacetime::{Segment, Spacetime};

@@ -69,6 +69,11 @@ impl<To, From, S: Real> Lorentz<To, From, S> {
         Lorentz::from_rows(rows)
     }
 
+    /// The same map with the digits of f64.
+    pub fn rounded(&self) -> Lorentz<To, From, f64> {
+        Lorentz::from_rows(self.rows.map(|row| row.map(S::value)))
+    }
+
     /// The matrix, row by row: component `i` in `To` is the sum over `j` of `rows()[i][j]` times component
     /// `j` in `From`.
     pub fn rows(&self) -> [[S; 4]; 4] {

@@ -1,6 +1,7 @@
 //! Scenes as TOML.
 
 mod animation;
+mod light;
 mod source;
 mod tables;
 
@@ -8,14 +9,17 @@ pub use source::SceneError;
 pub(super) use source::did_you_mean;
 
 use super::import::{ImportError, import, is_mesh_file};
-use super::{Aim, Body, LensError, Part, Projection, Scene, View, ViewError, builtin_mesh, builtin_meshes};
+use super::{
+    Aim, Body, LensError, Light, Part, Projection, Scene, View, ViewError, builtin_mesh, builtin_meshes,
+};
 use crate::relativity::Motion;
 use glam::{DAffine3, DQuat, DVec3};
+use light::{Finish, read_light, read_material};
 use source::{Source, VelocityKeys, explain, velocity_keys};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use tables::{BodyTable, CameraTable, Color, MaterialTable, Scale, SceneFile, Vector};
+use tables::{BodyTable, CameraTable, Color, Scale, SceneFile, Vector};
 use terrell_geodesic::TetradError;
 use toml::Spanned;
 
@@ -30,10 +34,16 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         source.fault(at, explain(e.message(), at.map_or("", |at| source.line_at(at))))
     })?;
     let (mut notes, mut files) = (Vec::new(), vec![path.to_owned()]);
+    let mut finishes = BTreeMap::new();
+    for (name, table) in &file.material {
+        finishes.insert(name.as_str(), read_material(&source, table, &mut files)?);
+    }
+    let read_light = |(index, table)| read_light(&source, index, table, &mut files);
+    let lights: Vec<Light> = file.light.iter().enumerate().map(read_light).collect::<Result<_, _>>()?;
     let mut meshes: BTreeMap<String, Vec<Part>> = BTreeMap::new();
     let mut bodies: Vec<Body> = Vec::new();
     for (index, table) in file.body.iter().enumerate() {
-        for body in read_body(&source, index, table, &file.material, &mut meshes, (&mut notes, &mut files))? {
+        for body in read_body(&source, index, table, &finishes, &mut meshes, (&mut notes, &mut files))? {
             if bodies.iter().any(|b| b.name == body.name) {
                 let message = format!("two bodies are called '{}'; give one another name", body.name);
                 return Err(source.at(&table.mesh, message));
@@ -44,9 +54,6 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     if bodies.is_empty() {
         return Err(source.fault(None, "the scene has no [[body]], so there is nothing to see"));
     }
-    for material in file.material.values() {
-        read_color(&source, &material.color)?;
-    }
     let view = match &file.camera {
         Some(table) => {
             let view = read_camera(&source, table)?;
@@ -56,7 +63,7 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         None => View::default(),
     };
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let mut scene = Scene { files, notes, ..Scene::new(&name, bodies, view) };
+    let mut scene = Scene { files, notes, lights, ..Scene::new(&name, bodies, view) };
     if let Some(table) = &file.animation {
         scene.animation = Some(animation::read_animation(&source, table, &scene)?);
     }
@@ -149,7 +156,7 @@ fn read_body(
     source: &Source<'_>,
     index: usize,
     table: &BodyTable,
-    materials: &BTreeMap<String, MaterialTable>,
+    finishes: &BTreeMap<&str, Finish>,
     meshes: &mut BTreeMap<String, Vec<Part>>,
     (notes, files): (&mut Vec<String>, &mut Vec<PathBuf>),
 ) -> Result<Vec<Body>, SceneError> {
@@ -162,12 +169,11 @@ fn read_body(
     let mut parts = meshes[mesh_name].clone();
     if let Some(word) = &table.material {
         let name = word.get_ref();
-        let material = materials.get(name).ok_or_else(|| {
-            let known = materials.keys().map(String::as_str);
+        let finish = finishes.get(name.as_str()).ok_or_else(|| {
+            let known = finishes.keys().copied();
             source.at(word, format!("there is no [material.{name}]; {}", did_you_mean(name, known)))
         })?;
-        let color = read_color(source, &material.color)?;
-        parts.iter_mut().for_each(|part| Arc::make_mut(&mut part.mesh).repaint(color));
+        parts.iter_mut().for_each(|part| finish.apply(Arc::make_mut(&mut part.mesh)));
     }
     let scale = match &table.scale {
         None => DVec3::ONE,
@@ -241,6 +247,9 @@ fn read_mesh(
     let imported = import(&file).map_err(|e: ImportError| source.at(word, e))?;
     if imported.moves() {
         notes.push(format!("{name}: velocities in it are left out; a [[body]] moves as a whole"));
+    }
+    if !imported.lights.is_empty() {
+        notes.push(format!("{name}: lights in it are left out; a scene's are its [[light]]s"));
     }
     let imported = imported.settled();
     notes.extend(imported.notes);

@@ -176,7 +176,7 @@ pub(super) fn explain(message: &str, line: &str) -> String {
         return format!("unknown key '{unknown}'; {}", did_you_mean(unknown, known.iter().copied()));
     }
     if line.trim_start().starts_with('[') && message.starts_with("invalid type: map, expected a sequence") {
-        return "bodies are a list: write [[body]], with two brackets".to_owned();
+        return "bodies and lights are lists: write [[body]] and [[light]], with two brackets".to_owned();
     }
     let message = match message.split_once("untagged enum ") {
         Some((_, "Scale")) => "needs one number or three",

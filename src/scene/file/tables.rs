@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use toml::Spanned;
+use toml::{Spanned, Value};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -12,6 +12,8 @@ pub(super) struct SceneFile {
     pub body: Vec<BodyTable>,
     #[serde(default)]
     pub material: BTreeMap<String, MaterialTable>,
+    #[serde(default)]
+    pub light: Vec<LightTable>,
     pub animation: Option<AnimationTable>,
 }
 
@@ -73,7 +75,45 @@ pub(super) enum Scale {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MaterialTable {
-    pub color: Spanned<Color>,
+    pub color: Option<Spanned<Color>>,
+    pub emission: Option<Spanned<Color>>,
+    pub spectrum: Option<Spanned<Value>>,
+    pub luminance: Option<Spanned<f64>>,
+    pub radiance: Option<Spanned<f64>>,
+    pub beyond: Option<Spanned<String>>,
+    pub surface: Option<Spanned<String>>,
+    pub law: Option<Spanned<Value>>,
+    pub gloss: Option<GlossTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GlossTable {
+    pub reflectance: Option<Spanned<f64>>,
+    pub roughness: Option<Spanned<f64>>,
+    pub metallic: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LightTable {
+    pub name: Option<String>,
+    pub kind: Spanned<String>,
+    pub towards: Option<Vector>,
+    pub cone_deg: Option<Spanned<[f64; 2]>>,
+    pub strength: Option<Spanned<f64>>,
+    pub power: Option<Spanned<f64>>,
+    pub color: Option<Spanned<Color>>,
+    pub spectrum: Option<Spanned<Value>>,
+    pub beyond: Option<Spanned<String>>,
+    pub time: Option<Spanned<f64>>,
+    pub position: Option<Vector>,
+    pub velocity: Option<Vector>,
+    pub celerity: Option<Vector>,
+    pub beta: Option<Spanned<f64>>,
+    pub gamma: Option<Spanned<f64>>,
+    pub rapidity: Option<Spanned<f64>>,
+    pub direction: Option<Vector>,
 }
 
 #[derive(Clone, Deserialize)]

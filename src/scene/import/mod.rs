@@ -4,7 +4,7 @@ mod gltf;
 mod obj;
 mod picture;
 
-use super::{Body, Clip, Lamp, Material, Mesh, MeshError, View};
+use super::{Body, Clip, Light, Material, Mesh, MeshError, View};
 use crate::relativity::Motion;
 use glam::{DAffine3, DVec3};
 use std::cell::RefCell;
@@ -18,8 +18,8 @@ pub struct Imported {
     pub parts: Vec<Part>,
     /// The camera in it, if any.
     pub view: Option<View>,
-    /// The lamps in it.
-    pub lamps: Vec<Lamp>,
+    /// The lights in it.
+    pub lights: Vec<Light>,
     /// The files that were read.
     pub files: Vec<PathBuf>,
     /// What was passed over, for people to read.

@@ -224,7 +224,8 @@ mod tests {
         let material = mesh.material_of(0).unwrap();
         assert_eq!((material.name.as_str(), material.base_color), ("m", [0.5; 3]));
         assert_eq!(material.emission, [3.0, 1.5, 0.0]);
-        assert!(material.unlit && material.one_sided && material.emission_texture.is_some());
+        assert_eq!(material.surface, crate::scene::Surface::Luminous);
+        assert!(material.one_sided && material.emission_texture.is_some());
         let texture = material.base_texture.as_ref().unwrap();
         use crate::scene::Wrap;
         assert_eq!((texture.wrap, texture.blocky), ([Wrap::Clamp, Wrap::Mirror], true));

@@ -4,7 +4,8 @@ use super::extras::Extras;
 use super::motion::{Animated, placement};
 use super::surface::Surfaces;
 use crate::relativity::Motion;
-use crate::scene::{Aim, Clip, Joint, Lamp, LampKind, Mesh, Paint, Projection, View};
+use crate::scene::{Aim, Clip, Joint, Light, LightKind, Mesh, Paint, Projection, View};
+use crate::spectrum::Spectrum;
 use glam::{DAffine3, DVec3};
 use gltf::mesh::Mode;
 use std::path::Path;
@@ -21,7 +22,7 @@ pub(super) struct Reader {
     z_up: bool,
     parts: Vec<Part>,
     view: Option<View>,
-    lamps: Vec<Lamp>,
+    lights: Vec<Light>,
     notes: Vec<String>,
     /// Whether any primitive has a material or vertex colours.
     colored: bool,
@@ -67,7 +68,7 @@ impl Reader {
             z_up: generator.contains("Blender"),
             parts: Vec::new(),
             view: None,
-            lamps: Vec::new(),
+            lights: Vec::new(),
             notes,
             colored: false,
             visited: vec![false; file.nodes().len()],
@@ -148,7 +149,7 @@ impl Reader {
                 self.note("skins are not animated: the mesh is drawn as it was bound");
             }
             if let Some(light) = node.light() {
-                self.lamp(&node, &light, &place);
+                self.light(&node, &light, &place);
             }
             if let Some(camera) = node.camera() {
                 self.camera(&camera, &place, &extras)?;
@@ -316,24 +317,25 @@ impl Reader {
         Ok(())
     }
 
-    fn lamp(&mut self, node: &gltf::Node<'_>, light: &gltf::khr_lights_punctual::Light<'_>, place: &Place) {
+    fn light(&mut self, node: &gltf::Node<'_>, light: &gltf::khr_lights_punctual::Light<'_>, place: &Place) {
         use gltf::khr_lights_punctual::Kind;
-        self.note("lamps are read, but do not light anything yet: surfaces shine by themselves");
         let within = Clip::new(place.joints.clone()).pose(0.0) * place.within;
-        // Lamps look along −z.
+        // Lights look along −z.
         let direction = within.transform_vector3(-DVec3::Z).normalize_or_zero();
         let position = within.translation;
-        self.lamps.push(Lamp {
+        self.lights.push(Light {
             name: light.name().map_or_else(|| named(node), str::to_owned),
             kind: match light.kind() {
-                Kind::Directional => LampKind::Distant { direction },
-                Kind::Point => LampKind::Point { position },
+                Kind::Directional => LightKind::Distant { direction },
+                Kind::Point => LightKind::Point { position },
                 Kind::Spot { inner_cone_angle, outer_cone_angle } => {
-                    LampKind::Spot { position, direction, cone: [inner_cone_angle, outer_cone_angle] }
+                    LightKind::Spot { position, direction, cone: [inner_cone_angle, outer_cone_angle] }
                 }
             },
             color: light.color(),
-            intensity: light.intensity(),
+            spectrum: Spectrum::default(),
+            // Lux and candela.
+            strength: light.intensity().into(),
             motion: place.motion,
         });
     }
@@ -360,7 +362,7 @@ impl Reader {
         Ok(Imported {
             parts: self.parts,
             view: self.view,
-            lamps: self.lamps,
+            lights: self.lights,
             notes: self.notes,
             ..Imported::default()
         })

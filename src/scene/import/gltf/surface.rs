@@ -1,12 +1,15 @@
 use super::super::picture::decode;
 use super::super::{ReadFile, note_once};
 use super::buffers::{Buffers, at_uri};
-use crate::scene::{Material, Picture, Texture, Wrap};
+use crate::scene::{Gloss, Material, Picture, Surface, Texture, Wrap};
 use glam::{DAffine2, DMat2, DVec2};
 use gltf::material::AlphaMode;
 use gltf::texture::{MagFilter, WrappingMode};
 use std::path::Path;
 use std::sync::Arc;
+
+/// What the format has surfaces that are no metals reflect at right angles.
+const DIELECTRIC: f32 = 0.04;
 
 /// The materials of a file.
 pub(super) struct Surfaces {
@@ -79,6 +82,9 @@ impl Surfaces {
             };
             let base_texture = texture(base.base_color_texture());
             let emission_texture = texture(material.emissive_texture());
+            if base.metallic_roughness_texture().is_some() {
+                note_once(notes, "textures of metal and roughness are left out");
+            }
             let strength = material.emissive_strength().unwrap_or(1.0);
             let [r, g, b, alpha] = base.base_color_factor();
             if material.alpha_mode() != AlphaMode::Opaque && (alpha < 1.0 || base_texture.is_some()) {
@@ -90,8 +96,14 @@ impl Surfaces {
                 base_texture,
                 emission: material.emissive_factor().map(|v| v * strength),
                 emission_texture,
-                unlit: material.unlit(),
+                surface: if material.unlit() { Surface::Luminous } else { Surface::Auto },
+                gloss: Gloss {
+                    reflectance: DIELECTRIC,
+                    roughness: base.roughness_factor(),
+                    metallic: base.metallic_factor(),
+                },
                 one_sided: !material.double_sided(),
+                ..Material::default()
             });
             out.uv_sets.push(uv_set.unwrap_or(0));
         }

@@ -1,0 +1,80 @@
+//! How bright a scene is to be shown.
+
+use crate::color::Coloring;
+use crate::film::Film;
+use crate::render::{Options, RenderError, render_again};
+use crate::scene::{Camera, Scene};
+use crate::tone::{Development, Tone};
+
+/// How an exposure is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// This EV: light times two to its power.
+    Fixed(f32),
+    /// What [metering](Tone::metered) says of the same views as they would be without shifts and beaming.
+    Rest,
+    /// What metering says of the picture; of a film, of some of its frames together, so that nothing flickers.
+    Auto,
+}
+
+/// Frames of a film that are metered, at most.
+const METERED: usize = 9;
+
+/// Pixels across of pictures that are drawn only to be metered, at most.
+const ACROSS: u32 = 200;
+
+impl Exposure {
+    /// Brightness that goes with the shift needs metering; other colours are as they are.
+    pub fn usual(coloring: Coloring) -> Self {
+        if coloring.is_beamed() { Self::Auto } else { Self::Fixed(0.0) }
+    }
+
+    /// For a picture that is there.
+    ///
+    /// # Errors
+    /// If the scene cannot be drawn without shifts.
+    pub fn of_picture(
+        self,
+        tone: Tone,
+        scene: &Scene,
+        camera: &Camera,
+        options: &Options,
+        film: &Film,
+    ) -> Result<Development, RenderError> {
+        match self {
+            Self::Auto => Ok(Development { ev: tone.metered(film.color.iter().copied()), tone }),
+            _ => self.of_film(tone, scene, std::slice::from_ref(camera), options),
+        }
+    }
+
+    /// For a film of all these frames.
+    ///
+    /// # Errors
+    /// If a frame cannot be drawn.
+    pub fn of_film(
+        self,
+        tone: Tone,
+        scene: &Scene,
+        cameras: &[Camera],
+        options: &Options,
+    ) -> Result<Development, RenderError> {
+        let coloring = match self {
+            Self::Fixed(ev) => return Ok(Development { ev, tone }),
+            Self::Rest => Coloring::Geometry,
+            Self::Auto => options.coloring,
+        };
+        // Outlines matter less than the time.
+        let options =
+            Options { coloring, samples: 1, tolerance: options.tolerance.max(1.0), ..options.clone() };
+        let count = cameras.len().min(METERED);
+        let place = |i: usize| if count > 1 { i * (cameras.len() - 1) / (count - 1) } else { 0 };
+        let shading = options.shading(scene, cameras)?;
+        let (mut film, mut light) = (Film::new(0, 0), Vec::new());
+        for camera in (0..count).map(|i| &cameras[place(i)]) {
+            let camera = Camera { lens: camera.lens.within(ACROSS), ..*camera };
+            render_again(scene, &camera, &options, &shading, &mut film, |_| ())?;
+            light.extend(film.color.iter().copied());
+        }
+        Ok(Development { ev: tone.metered(light), tone })
+    }
+}

@@ -1,0 +1,12 @@
+//! From surfaces to the observer: what they shine with and reflect, shifted and beamed.
+//!
+//! [`Shading`] is made once a scene: what every body's materials and lights are in its own rest frame, with tables of
+//! their colours under any shift. [`SeenShading`] is that for one moment of an observer. How a pixel has found the point
+//! of the surface does not matter here.
+
+mod ambient;
+mod gloss;
+mod incidence;
+mod shading;
+
+pub use shading::{DopplerAt, Point, SeenShading, Shading, ShadingError, TableInfo, has_near_lights};
