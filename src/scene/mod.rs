@@ -25,7 +25,10 @@ pub use clip::{Between, Blend, Clip, Joint, Track};
 pub use file::{SceneError, parse_scene};
 pub use fingerprint::Fingerprint;
 pub use framing::{authored, framed};
-pub use import::{ImportError, Imported, Part, import, import_obj, is_mesh_file, read_plain};
+pub use import::{
+    Choice, ImportError, Imported, Part, has_scenes, import, import_choosing, import_obj, is_mesh_file,
+    read_plain,
+};
 pub use lamp::{Lamp, LampKind};
 pub use material::Material;
 pub use mesh::{Mesh, MeshError, Paint};

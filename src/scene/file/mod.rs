@@ -7,7 +7,7 @@ mod tables;
 pub use source::SceneError;
 pub(super) use source::did_you_mean;
 
-use super::import::{ImportError, import, is_mesh_file};
+use super::import::{Choice, ImportError, has_scenes, import_choosing, is_mesh_file};
 use super::{Aim, Body, LensError, Part, Projection, Scene, View, ViewError, builtin_mesh, builtin_meshes};
 use crate::relativity::Motion;
 use glam::{DAffine3, DQuat, DVec3};
@@ -30,7 +30,7 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         source.fault(at, explain(e.message(), at.map_or("", |at| source.line_at(at))))
     })?;
     let (mut notes, mut files) = (Vec::new(), vec![path.to_owned()]);
-    let mut meshes: BTreeMap<String, Vec<Part>> = BTreeMap::new();
+    let mut meshes = Meshes::new();
     let mut bodies: Vec<Body> = Vec::new();
     for (index, table) in file.body.iter().enumerate() {
         for body in read_body(&source, index, table, &file.material, &mut meshes, (&mut notes, &mut files))? {
@@ -145,21 +145,25 @@ pub(crate) fn parse_projection(word: &str) -> Result<Projection, String> {
     })
 }
 
+/// The meshes read so far, by name and, of glTF files, scene.
+type Meshes = BTreeMap<(String, Option<String>), Vec<Part>>;
+
 fn read_body(
     source: &Source<'_>,
     index: usize,
     table: &BodyTable,
     materials: &BTreeMap<String, MaterialTable>,
-    meshes: &mut BTreeMap<String, Vec<Part>>,
+    meshes: &mut Meshes,
     (notes, files): (&mut Vec<String>, &mut Vec<PathBuf>),
 ) -> Result<Vec<Body>, SceneError> {
     let mesh_name = table.mesh.get_ref();
-    if !meshes.contains_key(mesh_name) {
-        let parts = read_mesh(source, &table.mesh, notes, files)?;
-        meshes.insert(mesh_name.clone(), parts);
+    let key = (mesh_name.clone(), table.file_scene.as_ref().map(|scene| scene.get_ref().clone()));
+    if !meshes.contains_key(&key) {
+        let parts = read_mesh(source, table, notes, files)?;
+        meshes.insert(key.clone(), parts);
     }
     // The meshes themselves are shared with other bodies as long as they stay as they are.
-    let mut parts = meshes[mesh_name].clone();
+    let mut parts = meshes[&key].clone();
     if let Some(word) = &table.material {
         let name = word.get_ref();
         let material = materials.get(name).ok_or_else(|| {
@@ -222,11 +226,16 @@ fn read_body(
 
 fn read_mesh(
     source: &Source<'_>,
-    word: &Spanned<String>,
+    table: &BodyTable,
     notes: &mut Vec<String>,
     files: &mut Vec<PathBuf>,
 ) -> Result<Vec<Part>, SceneError> {
-    let name = word.get_ref();
+    let (word, name) = (&table.mesh, table.mesh.get_ref());
+    let scene = table.file_scene.as_ref();
+    if let Some(scene) = scene.filter(|_| builtin_mesh(name).is_some() || !has_scenes(Path::new(name))) {
+        let message = format!("file_scene chooses within a .gltf or .glb file, and mesh '{name}' is none");
+        return Err(source.at(scene, message));
+    }
     if let Some(mesh) = builtin_mesh(name) {
         return Ok(vec![Part::still(name.clone(), mesh)]);
     }
@@ -238,7 +247,11 @@ fn read_mesh(
         return Err(source.at(word, message));
     }
     let file = source.path.parent().unwrap_or(Path::new("")).join(name);
-    let imported = import(&file).map_err(|e: ImportError| source.at(word, e))?;
+    let choice = Choice { scene: scene.map(|scene| scene.get_ref().clone()), camera: None };
+    let imported = import_choosing(&file, &choice).map_err(|e| match (&e, scene) {
+        (ImportError::Choice { .. }, Some(scene)) => source.at(scene, format!("file_scene: {e}")),
+        _ => source.at(word, e),
+    })?;
     if imported.moves() {
         notes.push(format!("{name}: velocities in it are left out; a [[body]] moves as a whole"));
     }

@@ -1,5 +1,6 @@
 use super::super::{ImportError, Imported, Part, ReadFile, note_once, without_textures};
 use super::buffers::{Buffers, INDEX_TYPES, allowed_types};
+use super::choice::{self, Found};
 use super::extras::Extras;
 use super::motion::{Animated, placement};
 use super::surface::Surfaces;
@@ -21,6 +22,7 @@ pub(super) struct Reader {
     z_up: bool,
     parts: Vec<Part>,
     view: Option<View>,
+    cameras: Vec<Found>,
     lamps: Vec<Lamp>,
     notes: Vec<String>,
     /// Whether any primitive has a material or vertex colours.
@@ -67,6 +69,7 @@ impl Reader {
             z_up: generator.contains("Blender"),
             parts: Vec::new(),
             view: None,
+            cameras: Vec::new(),
             lamps: Vec::new(),
             notes,
             colored: false,
@@ -75,8 +78,19 @@ impl Reader {
         })
     }
 
-    /// The default scene, else the first, else all meshes.
-    pub fn scene(mut self, file: &gltf::Gltf) -> Result<Imported, String> {
+    /// Tells which scene is shown of several, where none was asked for.
+    pub fn note_scene(&mut self, scene: &gltf::Scene<'_>, count: usize) {
+        if count > 1 {
+            let name = scene.name().map_or(String::new(), |n| format!(" ('{n}')"));
+            let number = scene.index() + 1;
+            self.note(&format!(
+                "of {count} scenes number {number}{name} is shown; --file-scene (file_scene in a [[body]]) takes another"
+            ));
+        }
+    }
+
+    /// Reads a scene; all meshes, where a file has none.
+    pub fn scene(&mut self, file: &gltf::Gltf, scene: Option<gltf::Scene<'_>>) -> Result<(), String> {
         let still = Place {
             part: None,
             name: self.name.clone(),
@@ -84,13 +98,8 @@ impl Reader {
             joints: Vec::new(),
             within: DAffine3::IDENTITY,
         };
-        match file.default_scene().or_else(|| file.scenes().next()) {
+        match scene {
             Some(scene) => {
-                if file.scenes().len() > 1 {
-                    let name = scene.name().map_or(String::new(), |n| format!(" ('{n}')"));
-                    let number = scene.index() + 1;
-                    self.note(&format!("of {} scenes number {number}{name} is shown", file.scenes().len()));
-                }
                 let mut waiting: Vec<_> = scene.nodes().map(|node| (node, still.clone())).collect();
                 waiting.reverse();
                 self.trees(waiting)?;
@@ -102,7 +111,7 @@ impl Reader {
                 }
             }
         }
-        self.finish()
+        Ok(())
     }
 
     /// Trees of nodes, as deep as they may be; the last is next.
@@ -151,7 +160,7 @@ impl Reader {
                 self.lamp(&node, &light, &place);
             }
             if let Some(camera) = node.camera() {
-                self.camera(&camera, &place, &extras)?;
+                self.camera(&node, &camera, &place, &extras);
             }
             // Children in order, before siblings.
             let first = waiting.len();
@@ -284,26 +293,21 @@ impl Reader {
         Ok(Some(out))
     }
 
-    /// The first camera is the view.
-    fn camera(&mut self, camera: &gltf::Camera<'_>, place: &Place, extras: &Extras) -> Result<(), String> {
-        if self.view.is_some() {
-            self.note("of several cameras the first is used");
-            return Ok(());
-        }
+    /// A camera to choose from.
+    fn camera(&mut self, node: &gltf::Node<'_>, camera: &gltf::Camera<'_>, place: &Place, extras: &Extras) {
+        let names = [node.name(), camera.name()].map(|name| name.map(str::to_owned));
+        let animated = !place.joints.is_empty();
         let gltf::camera::Projection::Perspective(lens) = camera.projection() else {
-            self.note("a camera without perspective is left out");
-            return Ok(());
+            self.cameras.push(Found { names, view: None, animated });
+            return;
         };
-        if !place.joints.is_empty() {
-            self.note("the camera's animation is not followed: it stays as at its beginning");
-        }
         let joints = Clip::new(place.joints.clone());
         let within = joints.pose(0.0) * place.within;
         let event = event(&place.motion, within.translation);
         // With a velocity, it is the time of its motion, and in there already.
         let time = if extras.celerity.is_some() { 0.0 } else { extras.time };
         let direction = |v: DVec3| within.transform_vector3(v);
-        self.view = Some(View {
+        let view = View {
             event: Event::at(event.t() + time, event.position()),
             celerity: place.motion.celerity,
             aim: Aim::Forward(direction(-DVec3::Z)),
@@ -312,7 +316,20 @@ impl Reader {
             fov_deg: Some(f64::from(lens.yfov()).to_degrees()),
             nearest: extras.nearest.clone(),
             ..View::default()
-        });
+        };
+        self.cameras.push(Found { names, view: Some(view), animated });
+    }
+
+    /// The camera asked for becomes the view; else the first with perspective.
+    pub fn choose_camera(&mut self, wanted: Option<&str>) -> Result<(), String> {
+        if wanted.is_none() && self.cameras.iter().any(|camera| camera.view.is_none()) {
+            self.note("a camera without perspective is left out");
+        }
+        let Some(found) = choice::camera(&self.cameras, wanted)? else { return Ok(()) };
+        self.view = found.view.clone();
+        if found.animated {
+            self.note("the camera's animation is not followed: it stays as at its beginning");
+        }
         Ok(())
     }
 
@@ -338,7 +355,7 @@ impl Reader {
         });
     }
 
-    fn finish(mut self) -> Result<Imported, String> {
+    pub fn finish(mut self) -> Imported {
         for part in &mut self.parts {
             // Of all materials those it uses, in their order.
             let mut new = vec![None; self.surfaces.materials.len()];
@@ -357,13 +374,14 @@ impl Reader {
         if !self.colored {
             self.note("the mesh has no colours; painted in clay by the direction its faces look");
         }
-        Ok(Imported {
+        Imported {
             parts: self.parts,
             view: self.view,
+            cameras: self.cameras.len(),
             lamps: self.lamps,
             notes: self.notes,
             ..Imported::default()
-        })
+        }
     }
 
     fn note(&mut self, note: &str) {
