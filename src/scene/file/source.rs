@@ -144,8 +144,11 @@ impl Source<'_> {
 
 /// The nearest of the names, if near enough to be what was meant.
 fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // What is longer is no slip of the pen, and comparing it would take memory as the product of the lengths.
+    const LONGEST: usize = 200;
     names
         .into_iter()
+        .filter(|name| word.len().max(name.len()) <= LONGEST)
         .map(|name| (strsim::damerau_levenshtein(word, name), name))
         .min()
         .filter(|(distance, name)| *distance <= 1 + name.len() / 3)
