@@ -13,6 +13,7 @@ mod lamp;
 mod material;
 mod mesh;
 mod path;
+mod room;
 pub mod shapes;
 mod texture;
 mod view;

@@ -22,6 +22,8 @@ pub struct Imported {
     pub cameras: usize,
     /// The lamps in it.
     pub lamps: Vec<Lamp>,
+    /// Bytes of the files that were read, pictures left out.
+    pub bytes: usize,
     /// The files that were read.
     pub files: Vec<PathBuf>,
     /// What was passed over, for people to read.

@@ -9,6 +9,7 @@ mod reader;
 mod surface;
 
 use super::{Choice, ImportError, Imported, ReadFile};
+use crate::scene::room::Room;
 use buffers::Buffers;
 use reader::Reader;
 use std::path::Path;
@@ -38,7 +39,8 @@ pub(super) fn parse(
     let not_there = |message: String| ImportError::Choice { path: path.to_owned(), message };
     let scene = choice::scene(&file, choice.scene.as_deref()).map_err(not_there)?;
     let buffers = Buffers::read(&file, path, read)?;
-    let mut reader = Reader::new(&file, buffers, path, read)?;
+    let room = Room::new(bytes.len() + buffers.bytes_beside(&file), REMEDY);
+    let mut reader = Reader::new(&file, buffers, room, path, read)?;
     if let Some(scene) = scene.as_ref().filter(|_| choice.scene.is_none()) {
         reader.note_scene(scene, file.scenes().len());
     }
@@ -46,6 +48,9 @@ pub(super) fn parse(
     reader.choose_camera(choice.camera.as_deref()).map_err(not_there)?;
     Ok(reader.finish())
 }
+
+/// What to do with files that use their meshes too often.
+const REMEDY: &str = "use its meshes less often, or in files of their own";
 
 /// Extensions a file may require that change nothing we read, or that the reader knows.
 const KNOWN_EXTENSIONS: [&str; 4] = [

@@ -5,15 +5,17 @@ use super::extras::Extras;
 use super::motion::{Animated, placement};
 use super::surface::Surfaces;
 use crate::relativity::Motion;
+use crate::scene::room::{Room, named_size, size};
 use crate::scene::{Aim, Clip, Joint, Lamp, LampKind, Mesh, Paint, Projection, View};
 use glam::{DAffine3, DVec3};
 use gltf::mesh::Mode;
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::Arc;
 use terrell_geodesic::{Celerity, Event, FourVector, World};
 
 /// A file on its way to parts.
-pub(super) struct Reader {
+pub(super) struct Reader<'a> {
     name: String,
     buffers: Buffers,
     surfaces: Surfaces,
@@ -22,18 +24,14 @@ pub(super) struct Reader {
     z_up: bool,
     parts: Vec<Part>,
     view: Option<View>,
-    cameras: Vec<Found>,
+    cameras: Vec<Found<'a>>,
     lamps: Vec<Lamp>,
     notes: Vec<String>,
     /// Whether any primitive has a material or vertex colours.
     colored: bool,
     visited: Vec<bool>,
-    /// So far, or triangles where there are more of these.
-    vertices: usize,
+    room: Room,
 }
-
-/// A small file can use a mesh any number of times; each is kept by itself.
-const MOST_VERTICES: usize = 50_000_000;
 
 /// Where the children of a node stand.
 #[derive(Clone)]
@@ -41,25 +39,32 @@ struct Place {
     /// The part that is, or none that has a mesh yet.
     part: Option<usize>,
     /// What it is called, once it has one.
-    name: String,
+    name: Rc<str>,
     motion: Motion,
     /// Placements down to the last animated one, if any is.
-    joints: Vec<Joint>,
+    joints: Rc<[Joint]>,
     /// Within the last animated placement, or within the rest frame.
     within: DAffine3,
 }
 
-impl Reader {
+impl Place {
+    fn clip(&self) -> Clip {
+        Clip::new(self.joints.to_vec())
+    }
+}
+
+impl<'a> Reader<'a> {
     pub fn new(
         file: &gltf::Gltf,
         buffers: Buffers,
+        mut room: Room,
         path: &Path,
         read: ReadFile<'_>,
     ) -> Result<Self, ImportError> {
         let fault = |message| ImportError::Contents { path: path.to_owned(), line: None, message };
         let mut notes = Vec::new();
         let surfaces = Surfaces::read(file, &buffers, path, read, &mut notes);
-        let animated = Animated::read(file, &buffers, &mut notes).map_err(fault)?;
+        let animated = Animated::read(file, &buffers, &mut room, &mut notes).map_err(fault)?;
         let generator = file.document.as_json().asset.generator.as_deref().unwrap_or_default();
         Ok(Self {
             name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
@@ -74,7 +79,7 @@ impl Reader {
             notes,
             colored: false,
             visited: vec![false; file.nodes().len()],
-            vertices: 0,
+            room,
         })
     }
 
@@ -90,12 +95,12 @@ impl Reader {
     }
 
     /// Reads a scene; all meshes, where a file has none.
-    pub fn scene(&mut self, file: &gltf::Gltf, scene: Option<gltf::Scene<'_>>) -> Result<(), String> {
+    pub fn scene(&mut self, file: &'a gltf::Gltf, scene: Option<gltf::Scene<'a>>) -> Result<(), String> {
         let still = Place {
             part: None,
-            name: self.name.clone(),
+            name: self.name.as_str().into(),
             motion: Motion::at_rest(DVec3::ZERO),
-            joints: Vec::new(),
+            joints: Rc::new([]),
             within: DAffine3::IDENTITY,
         };
         match scene {
@@ -115,7 +120,7 @@ impl Reader {
     }
 
     /// Trees of nodes, as deep as they may be; the last is next.
-    fn trees<'a>(&mut self, mut waiting: Vec<(gltf::Node<'a>, Place)>) -> Result<(), String> {
+    fn trees(&mut self, mut waiting: Vec<(gltf::Node<'a>, Place)>) -> Result<(), String> {
         // What is still belongs together, wherever it is in the tree.
         let mut still = None;
         while let Some((node, mut place)) = waiting.pop() {
@@ -134,9 +139,11 @@ impl Reader {
             let own = placement(&node);
             match self.animated.joint(&node) {
                 Some(joint) => {
-                    place.joints.extend([Joint::Fixed(place.within), joint]);
+                    self.room.take(place.joints.len() + 2)?;
+                    let joints = place.joints.iter().cloned().chain([Joint::Fixed(place.within), joint]);
+                    place.joints = joints.collect();
                     (place.part, place.within) = (None, DAffine3::IDENTITY);
-                    place.name = named(&node);
+                    place.name = named(&node).into();
                 }
                 None => place.within *= own,
             }
@@ -157,7 +164,7 @@ impl Reader {
                 self.note("skins are not animated: the mesh is drawn as it was bound");
             }
             if let Some(light) = node.light() {
-                self.lamp(&node, &light, &place);
+                self.lamp(&node, &light, &place)?;
             }
             if let Some(camera) = node.camera() {
                 self.camera(&node, &camera, &place, &extras);
@@ -189,7 +196,7 @@ impl Reader {
         let origin = Event::at(time + event.t(), event.position());
         place.within = DAffine3::from_translation(-at) * place.within;
         place.motion = Motion { celerity, origin };
-        (place.part, place.name) = (None, named(node));
+        (place.part, place.name) = (None, named(node).into());
         Ok(())
     }
 
@@ -199,7 +206,8 @@ impl Reader {
             let part = match place.part {
                 Some(part) => part,
                 None => {
-                    let clip = (!place.joints.is_empty()).then(|| Clip::new(place.joints.clone()));
+                    self.room.take(named_size(&place.name) + place.joints.len())?;
+                    let clip = (!place.joints.is_empty()).then(|| place.clip());
                     let name = self.unused(&place.name);
                     let (motion, mesh) = (place.motion, Mesh::default());
                     self.parts.push(Part { name, mesh: Arc::new(mesh), motion, clip });
@@ -207,12 +215,8 @@ impl Reader {
                 }
             };
             let whole = Arc::make_mut(&mut self.parts[part].mesh);
-            self.vertices += read.vertex_count().max(read.triangles.len());
-            if self.vertices > MOST_VERTICES {
-                return Err(format!(
-                    "with every use of its meshes counted it has more than {MOST_VERTICES} vertices or triangles; use it in parts"
-                ));
-            }
+            let materials = read.material.first().map(|m| &self.surfaces.materials[*m as usize]);
+            self.room.take(size(&read) + materials.map_or(0, |material| named_size(&material.name)))?;
             whole.append(read.placed(&place.within));
         }
         Ok(())
@@ -294,15 +298,14 @@ impl Reader {
     }
 
     /// A camera to choose from.
-    fn camera(&mut self, node: &gltf::Node<'_>, camera: &gltf::Camera<'_>, place: &Place, extras: &Extras) {
-        let names = [node.name(), camera.name()].map(|name| name.map(str::to_owned));
+    fn camera(&mut self, node: &gltf::Node<'a>, camera: &gltf::Camera<'a>, place: &Place, extras: &Extras) {
+        let names = [node.name(), camera.name()];
         let animated = !place.joints.is_empty();
         let gltf::camera::Projection::Perspective(lens) = camera.projection() else {
             self.cameras.push(Found { names, view: None, animated });
             return;
         };
-        let joints = Clip::new(place.joints.clone());
-        let within = joints.pose(0.0) * place.within;
+        let within = place.clip().pose(0.0) * place.within;
         let event = event(&place.motion, within.translation);
         // With a velocity, it is the time of its motion, and in there already.
         let time = if extras.celerity.is_some() { 0.0 } else { extras.time };
@@ -333,15 +336,22 @@ impl Reader {
         Ok(())
     }
 
-    fn lamp(&mut self, node: &gltf::Node<'_>, light: &gltf::khr_lights_punctual::Light<'_>, place: &Place) {
+    fn lamp(
+        &mut self,
+        node: &gltf::Node<'_>,
+        light: &gltf::khr_lights_punctual::Light<'_>,
+        place: &Place,
+    ) -> Result<(), String> {
         use gltf::khr_lights_punctual::Kind;
         self.note("lamps are read, but do not light anything yet: surfaces shine by themselves");
-        let within = Clip::new(place.joints.clone()).pose(0.0) * place.within;
+        let within = place.clip().pose(0.0) * place.within;
         // Lamps look along −z.
         let direction = within.transform_vector3(-DVec3::Z).normalize_or_zero();
         let position = within.translation;
+        let name = light.name().map_or_else(|| named(node), str::to_owned);
+        self.room.take(named_size(&name))?;
         self.lamps.push(Lamp {
-            name: light.name().map_or_else(|| named(node), str::to_owned),
+            name,
             kind: match light.kind() {
                 Kind::Directional => LampKind::Distant { direction },
                 Kind::Point => LampKind::Point { position },
@@ -353,6 +363,7 @@ impl Reader {
             intensity: light.intensity(),
             motion: place.motion,
         });
+        Ok(())
     }
 
     pub fn finish(mut self) -> Imported {
@@ -379,6 +390,7 @@ impl Reader {
             view: self.view,
             cameras: self.cameras.len(),
             lamps: self.lamps,
+            bytes: self.room.bytes(),
             notes: self.notes,
             ..Imported::default()
         }
