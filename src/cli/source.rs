@@ -112,6 +112,5 @@ pub fn set_moment(scene: &mut Scene, time: Option<f64>, when: Option<&str>) -> R
 
 /// Whether neither bodies nor camera move.
 fn is_still(scene: &Scene) -> bool {
-    let moves = |c: &Celerity| c.direction().is_some();
-    !moves(&scene.view.celerity) && !scene.bodies.iter().any(|b| moves(&b.motion.celerity))
+    !scene.view.celerity.moves() && !scene.bodies.iter().any(|b| b.motion.celerity.moves())
 }

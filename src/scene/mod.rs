@@ -125,11 +125,10 @@ impl Scene {
     /// # Errors
     /// If the speed is none.
     pub fn set_speed(&mut self, speed: Speed) -> Result<(), CelerityError> {
-        let moves = |c: &Celerity| c.direction().is_some();
-        let any_body = self.bodies.iter().any(|b| moves(&b.motion.celerity));
+        let any_body = self.bodies.iter().any(|b| b.motion.celerity.moves());
         let mut motions: Vec<&mut Celerity> = if any_body {
-            self.bodies.iter_mut().map(|b| &mut b.motion.celerity).filter(|c| moves(c)).collect()
-        } else if moves(&self.view.celerity) {
+            self.bodies.iter_mut().map(|b| &mut b.motion.celerity).filter(|c| c.moves()).collect()
+        } else if self.view.celerity.moves() {
             vec![&mut self.view.celerity]
         } else {
             self.bodies.iter_mut().take(1).map(|b| &mut b.motion.celerity).collect()

@@ -86,7 +86,7 @@ impl Part {
 impl Imported {
     /// Whether the file says that anything in it moves.
     pub fn moves(&self) -> bool {
-        self.parts.iter().any(|p| p.motion.celerity.direction().is_some())
+        self.parts.iter().any(|p| p.motion.celerity.moves())
     }
 
     /// All meshes in one, as they are where nothing moves and nothing is animated.
