@@ -16,6 +16,7 @@ mod path;
 mod room;
 pub mod shapes;
 mod texture;
+mod velocity;
 mod view;
 
 pub use animation::{Animation, AnimationError, MAX_FRAMES, Pace, STANDARD_BETA};
