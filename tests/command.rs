@@ -230,6 +230,73 @@ fn the_users_mistakes_are_explained() {
     }
 }
 
+/// A glTF file of a triangle at x = −1 in one scene, at x = 1 in another with two cameras.
+const TWO_SCENES: &str = r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0], "name": "day"}, {"nodes": [1, 2, 3], "name": "night"}],
+    "nodes": [{"mesh": 0, "translation": [-1, 0, 0]}, {"mesh": 0, "translation": [1, 0, 0]},
+      {"camera": 0, "translation": [1, 0, 5], "name": "far"}, {"camera": 0, "translation": [1, 0, 3], "name": "near"}],
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+#[test]
+fn scenes_and_cameras_of_a_file_are_chosen() {
+    let folder = folder();
+    let at = folder.path();
+    std::fs::write(at.join("a.gltf"), TWO_SCENES).unwrap();
+    std::fs::write(at.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let scene = |file_scene: &str| format!("[[body]]\nmesh = \"a.gltf\"\nfile_scene = \"{file_scene}\"\n");
+    std::fs::write(at.join("night.toml"), scene("night")).unwrap();
+    std::fs::write(at.join("nihgt.toml"), scene("nihgt")).unwrap();
+    std::fs::write(at.join("cube.toml"), scene("night").replace("a.gltf", "cube")).unwrap();
+    std::fs::write(at.join("obj.toml"), scene("night").replace("a.gltf", "a.obj")).unwrap();
+    let json = |flags: &[&str]| -> serde_json::Value {
+        let base = ["-o", "a.png", "--size", "64x48", "--json", "-"];
+        let output = terrell(at, &[&["render"], flags, &base].concat()).success().get_output().stdout.clone();
+        serde_json::from_slice(&output).unwrap()
+    };
+    let notes = |json: &serde_json::Value| json["notes"].to_string();
+    let usual = json(&["a.gltf"]);
+    assert!(notes(&usual).contains("of 2 scenes number 1 ('day') is shown; --file-scene"), "{usual}");
+    let far = json(&["a.gltf", "--file-scene", "night"]);
+    assert_eq!(far["camera"]["event"], serde_json::json!([0.0, 1.0, 0.0, 5.0]));
+    assert!(notes(&far).contains("of 2 cameras the first with perspective is used; --file-camera"), "{far}");
+    for (scene, camera) in [("night", "near"), ("2", "2")] {
+        let near = json(&["a.gltf", "--file-scene", scene, "--file-camera", camera]);
+        assert_eq!(near["camera"]["event"], serde_json::json!([0.0, 1.0, 0.0, 3.0]));
+        assert!(!notes(&near).contains("cameras") && !notes(&near).contains("scenes"), "{near}");
+    }
+    let body = json(&["night.toml"]);
+    assert!(!notes(&body).contains("cameras") && !notes(&body).contains("scenes"), "{body}");
+    let choose = ["--file-scene", "2", "--file-camera", "near", "-q"];
+    terrell(at, &[&["transform", "a.gltf"], &choose[..]].concat()).success();
+    terrell(
+        at,
+        &[&["animate", "a.gltf", "--time", "0,1", "--frames", "2", "--size", "16x16"], &choose[..]].concat(),
+    )
+    .success();
+
+    for (arguments, parts) in [
+        (
+            &["render", "a.gltf", "--file-scene", "nihgt"][..],
+            &["a.gltf", "'nihgt'", "did you mean 'night'?"][..],
+        ),
+        (&["render", "a.gltf", "--file-scene", "3"], &["no scene '3'", "from 1 to 2: day, night"]),
+        (&["render", "a.gltf", "--file-camera", "far"], &["no camera 'far'", "there is none"]),
+        (&["render", "a.gltf", "--file-scene", "2", "--file-camera", "fat"], &["did you mean 'far'?"]),
+        (&["render", "cube", "--file-scene", "1"], &["--file-scene", ".gltf", "cube"]),
+        (&["transform", "a.obj", "--file-camera", "1"], &["--file-camera", ".gltf", "a.obj"]),
+        (&["animate", "night.toml", "--file-scene", "1"], &["--file-scene", "night.toml", "file_scene"]),
+        (&["render", "night.toml", "--file-camera", "1"], &["--file-camera", "night.toml"]),
+        (&["render", "nihgt.toml"], &["nihgt.toml:3", "did you mean 'night'?"]),
+        (&["render", "cube.toml"], &["cube.toml:3", "file_scene", "'cube'"]),
+        (&["render", "obj.toml"], &["obj.toml:3", "file_scene", "'a.obj'"]),
+    ] {
+        refused(at, arguments, parts);
+    }
+}
+
 /// A device stays a device, a link a link.
 #[cfg(unix)]
 #[test]

@@ -7,7 +7,7 @@ use terrell::color::Coloring;
 use terrell::exposure::Exposure;
 use terrell::light::DopplerAt;
 use terrell::render::{Options, Raster};
-use terrell::scene::{Projection, Scene, Speed, View};
+use terrell::scene::{Choice, Projection, Scene, Speed, View};
 use terrell::tone::Tone;
 
 /// What there is to see, and how large: what everything made of a scene has in common.
@@ -18,6 +18,12 @@ pub struct SceneFlags {
     /// Seconds of a file's own animation that pass in a unit of time; 0 stops it
     #[arg(long, value_name = "R", value_parser = number)]
     animation_rate: Option<f64>,
+    /// Which scene of a glTF file, where it has several; numbers count from 1 [default: the file's own]
+    #[arg(long, value_name = "NAME|NUMBER")]
+    file_scene: Option<String>,
+    /// Which camera of a glTF file's scene; numbers count from 1 [default: the first with perspective]
+    #[arg(long, value_name = "NAME|NUMBER")]
+    file_camera: Option<String>,
     /// Pixels
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
@@ -207,7 +213,8 @@ impl SceneFlags {
         speed: Option<Speed>,
         set_lens: impl Fn(&mut View),
     ) -> Result<Scene, Fault> {
-        source::open(scene, speed, self.animation_rate, |view| {
+        let choice = Choice { scene: self.file_scene.clone(), camera: self.file_camera.clone() };
+        source::open(scene, speed, &choice, self.animation_rate, |view| {
             set_lens(view);
             view.fov_deg = self.fov.or(view.fov_deg);
             view.size = self.size.unwrap_or(view.size);

@@ -149,9 +149,8 @@ impl Animation {
 impl Scene {
     /// The body whose passing is filmed: the first that moves; if none does but the camera, the first.
     pub fn followed(&self) -> Option<&Body> {
-        let moves = |c: &Celerity| c.direction().is_some();
-        let body = self.bodies.iter().find(|b| moves(&b.motion.celerity));
-        body.or_else(|| self.bodies.first().filter(|_| moves(&self.view.celerity)))
+        let body = self.bodies.iter().find(|b| b.motion.celerity.moves());
+        body.or_else(|| self.bodies.first().filter(|_| self.view.celerity.moves()))
     }
 
     /// The camera at the event the scene gives, whatever moment is asked for.

@@ -1,4 +1,5 @@
 use glam::{DAffine3, DQuat, DVec3};
+use std::sync::Arc;
 
 /// How a mesh moves rigidly within its body's rest frame: an animation slow against light.
 ///
@@ -31,11 +32,11 @@ pub enum Joint {
     },
 }
 
-/// A value over time.
+/// A value over time; copies share it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track<T> {
-    times: Vec<f64>,
-    values: Vec<T>,
+    times: Arc<[f64]>,
+    values: Arc<[T]>,
     between: Between,
 }
 
@@ -93,7 +94,7 @@ impl Blend for DQuat {
 impl<T: Blend> Track<T> {
     /// What never changes.
     pub fn fixed(value: T) -> Self {
-        Self { times: vec![0.0], values: vec![value], between: Between::Step }
+        Self { times: [0.0].into(), values: [value].into(), between: Between::Step }
     }
 
     /// Values at rising times in seconds (three values a time for [`Between::Cubic`]); none if that is not what they
@@ -103,7 +104,7 @@ impl<T: Blend> Track<T> {
         let rising = times.windows(2).all(|t| t[0] < t[1]) && times.iter().all(|t| t.is_finite());
         let good =
             !times.is_empty() && rising && values.len() == needed && values.iter().all(|v| v.is_valid());
-        good.then_some(Self { times, values, between })
+        good.then(|| Self { times: times.into(), values: values.into(), between })
     }
 
     /// The value at a time; before the first key and after the last, theirs.
@@ -153,7 +154,12 @@ impl Joint {
         match self {
             Self::Fixed(_) => Vec::new(),
             Self::Moving { translation, rotation, scale } => {
-                [&translation.times, &rotation.times, &scale.times].into_iter().flatten().copied().collect()
+                [&translation.times, &rotation.times, &scale.times]
+                    .map(|t| t.iter())
+                    .into_iter()
+                    .flatten()
+                    .copied()
+                    .collect()
             }
         }
     }

@@ -13,8 +13,10 @@ mod light;
 mod material;
 mod mesh;
 mod path;
+mod room;
 pub mod shapes;
 mod texture;
+mod velocity;
 mod view;
 
 pub use animation::{Animation, AnimationError, MAX_FRAMES, Pace, STANDARD_BETA};
@@ -25,7 +27,10 @@ pub use clip::{Between, Blend, Clip, Joint, Track};
 pub use file::{SceneError, parse_scene};
 pub use fingerprint::Fingerprint;
 pub use framing::{authored, framed};
-pub use import::{ImportError, Imported, Part, import, import_obj, is_mesh_file, read_plain};
+pub use import::{
+    Choice, ImportError, Imported, Part, has_scenes, import, import_choosing, import_obj, is_mesh_file,
+    read_plain,
+};
 pub use light::{Light, LightKind};
 pub use material::{Colors, EmissionLaw, Gloss, Material, Surface};
 pub use mesh::{Mesh, MeshError, Paint};
@@ -121,11 +126,10 @@ impl Scene {
     /// # Errors
     /// If the speed is none.
     pub fn set_speed(&mut self, speed: Speed) -> Result<(), CelerityError> {
-        let moves = |c: &Celerity| c.direction().is_some();
-        let any_body = self.bodies.iter().any(|b| moves(&b.motion.celerity));
+        let any_body = self.bodies.iter().any(|b| b.motion.celerity.moves());
         let mut motions: Vec<&mut Celerity> = if any_body {
-            self.bodies.iter_mut().map(|b| &mut b.motion.celerity).filter(|c| moves(c)).collect()
-        } else if moves(&self.view.celerity) {
+            self.bodies.iter_mut().map(|b| &mut b.motion.celerity).filter(|c| c.moves()).collect()
+        } else if self.view.celerity.moves() {
             vec![&mut self.view.celerity]
         } else {
             self.bodies.iter_mut().take(1).map(|b| &mut b.motion.celerity).collect()

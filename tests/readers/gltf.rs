@@ -1,6 +1,6 @@
 //! glTF and GLB, damaged as JSON values and as chunks.
 
-use super::{binary, cases};
+use super::{BYTES_A_VERTEX, binary, cases, most_vertices, peak};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use serde_json::{Value, json};
@@ -403,6 +403,107 @@ fn however_often() {
     let mut json = whole(Some("a.gltf"));
     json["buffers"] = vec![json!({"byteLength": 1, "uri": "a.gltf"}); 2000].into();
     judge(&json.to_string().into_bytes(), false);
+}
+
+/// A file whose mesh, a list of corners of triangles, is used by so many nodes; and the buffer beside it.
+fn used_often(corners: usize, times: usize, strip: bool) -> (String, Vec<u8>) {
+    let floats = (0..3 * corners).map(|i| (i * i % 97) as f32);
+    let mut buffer: Vec<u8> = floats.flat_map(f32::to_le_bytes).collect();
+    let length = buffer.len();
+    buffer.extend((0..corners).map(|i| (i % 251) as u8));
+    let mut primitive = json!({"attributes": {"POSITION": 0}});
+    if strip {
+        primitive = json!({"attributes": {"POSITION": 0}, "indices": 1, "mode": 5});
+    }
+    let json = json!({
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": (0..times).collect::<Vec<_>>()}],
+        "nodes": vec![json!({"mesh": 0}); times],
+        "meshes": [{"primitives": [primitive]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": corners, "type": "VEC3", "min": [0, 0, 0], "max": [96, 96, 96]},
+            {"bufferView": 1, "componentType": 5121, "count": corners, "type": "SCALAR"}
+        ],
+        "bufferViews": [{"buffer": 0, "byteLength": length}, {"buffer": 0, "byteOffset": length, "byteLength": corners}],
+        "buffers": [{"byteLength": buffer.len(), "uri": "a.bin"}]
+    });
+    (json.to_string(), buffer)
+}
+
+/// The error, if any, of a file with its buffer beside it; in memory that the bound allows.
+fn read_bounded(json: &str, buffer: &[u8]) -> Option<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    std::fs::write(folder.path().join("a.bin"), buffer).unwrap();
+    std::fs::write(&path, json).unwrap();
+    let (read, most) = peak(|| import(&path));
+    let input = json.len() + buffer.len();
+    assert!(most <= most_vertices(input) * BYTES_A_VERTEX, "{most} bytes of memory for {input} of input");
+    read.err().map(|e| e.to_string())
+}
+
+/// A mesh used many times is kept many times, but not any number.
+#[test]
+fn used_however_often() {
+    // A statue, ten times.
+    let (json, buffer) = used_often(300_000, 10, false);
+    assert_eq!(read_bounded(&json, &buffer), None);
+    for strip in [false, true] {
+        let (json, buffer) = used_often(3000, 600, strip);
+        assert_eq!(read_bounded(&json, &buffer), None);
+        let (json, buffer) = used_often(3000, 3000, strip);
+        let error = read_bounded(&json, &buffer).unwrap();
+        let bytes = (json.len() + buffer.len()).to_string();
+        for part in ["a.gltf: ", "vertices or triangles", &bytes, "2000000, and 16 a byte", "less often"] {
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}
+
+/// What hangs on much that is animated has all of that above it; channels share what they read.
+#[test]
+fn animated_however_deep() {
+    let animated = |nodes: Vec<Value>, channels: usize, keys: usize| {
+        let times = (0..keys).flat_map(|i| (i as f32).to_le_bytes());
+        let mut buffer: Vec<u8> = times.collect();
+        buffer.resize(buffer.len() + 12 * keys.max(3), 0);
+        let channel = |i: usize| json!({"sampler": 0, "target": {"node": i, "path": "translation"}});
+        let json = json!({
+            "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": nodes,
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 1}}]}],
+            "animations": [{"samplers": [{"input": 0, "output": 2}], "channels": (0..channels).map(channel).collect::<Vec<_>>()}],
+            "accessors": [
+                {"bufferView": 0, "componentType": 5126, "count": keys, "type": "SCALAR", "min": [0], "max": [keys - 1]},
+                {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [0, 0, 0]},
+                {"bufferView": 1, "componentType": 5126, "count": keys, "type": "VEC3"}
+            ],
+            "bufferViews": [{"buffer": 0, "byteLength": 4 * keys}, {"buffer": 0, "byteOffset": 4 * keys, "byteLength": 12 * keys.max(3)}],
+            "buffers": [{"byteLength": buffer.len(), "uri": "a.bin"}]
+        });
+        read_bounded(&json.to_string(), &buffer)
+    };
+    // A chain of which every link has a mesh.
+    let chain = |count: usize| {
+        let link = |i: usize| {
+            if i + 1 < count { json!({"mesh": 0, "children": [i + 1]}) } else { json!({"mesh": 0}) }
+        };
+        (0..count).map(link).collect::<Vec<_>>()
+    };
+    assert_eq!(animated(chain(100), 100, 10), None);
+    assert!(animated(chain(3000), 3000, 2).unwrap().contains("vertices or triangles"));
+    // Many that share a long animation.
+    let many = |count: usize| {
+        let children: Vec<_> = (1..count).collect();
+        let first = json!({"mesh": 0, "children": children});
+        std::iter::once(first).chain((1..count).map(|_| json!({"mesh": 0}))).collect::<Vec<_>>()
+    };
+    assert_eq!(animated(many(50), 50, 1000), None);
+    assert!(animated(many(1000), 1000, 10_000).unwrap().contains("vertices or triangles"));
+    // A long chain with many children, none of them animated.
+    let mut nodes = chain(500);
+    nodes[499]["children"] = (500..4000).collect::<Vec<_>>().into();
+    nodes.extend(vec![json!({}); 3500]);
+    assert_eq!(animated(nodes, 500, 2), None);
 }
 
 /// Every value of the file in turn, replaced by everything it might wrongly be, or taken out.

@@ -144,6 +144,14 @@ fn damaged(mut bytes: Vec<u8>, damages: &[Damage]) -> Vec<u8> {
 /// `1 `, may become a triangle, with its colour and all that the parser underneath keeps.
 const MOST_BYTES: (usize, usize) = (200, 100_000);
 
+/// The most vertices, or triangles where there are more, that may be kept of so many bytes, as the docs have it.
+fn most_vertices(bytes: usize) -> usize {
+    2_000_000 + 16 * bytes
+}
+
+/// Bytes of memory a vertex may take with all that belongs to it, and a triangle, while lists grow.
+const BYTES_A_VERTEX: usize = 250;
+
 /// Reads a mesh: an error, or what can be drawn, in memory bounded by the input's size.
 fn judge<E: std::fmt::Display>(input: usize, read: impl FnOnce() -> Result<Imported, E>) {
     let (read, peak) = peak(read);

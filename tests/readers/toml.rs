@@ -1,7 +1,7 @@
 //! Scenes: the shipped ones damaged in tokens and values, and texts made to hurt.
 
 use super::tokens::{changed, changes};
-use super::{MOST_BYTES, TOML, cases, draw, peak};
+use super::{BYTES_A_VERTEX, MOST_BYTES, TOML, cases, draw, most_vertices, peak};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use std::path::Path;
@@ -188,6 +188,85 @@ fn many_bodies_of_one_mesh() {
     let (scene, most) = peak(|| parse_scene(&text, Path::new("a.toml")));
     assert_eq!(scene.unwrap().bodies.len(), 1000);
     assert!(most < 2 * once + MOST_BYTES.0 * text.len(), "{most} bytes, {once} for one mesh");
+}
+
+fn parse(text: &str) -> Result<terrell::scene::Scene, String> {
+    parse_scene(text, Path::new("a.toml")).map_err(|e| e.to_string())
+}
+
+/// Bodies that look alike share a mesh.
+#[test]
+fn meshes_are_copied_once_a_look() {
+    let red = "[material.red]\ncolor = [1, 0, 0]\n[material.blue]\ncolor = [0, 0, 1]\n";
+    let looks = [
+        "",
+        "scale = 2\n",
+        "scale = 2\nmaterial = \"red\"\n",
+        "material = \"red\"\n",
+        "material = \"blue\"\n",
+        "rotation = { axis = [0, 0, 1], angle_deg = 30 }\n",
+        "rotation = { axis = [0, 0, 1], angle_deg = 31 }\n",
+    ];
+    let body = |i: usize, look: &str| {
+        format!("[[body]]\nname = \"{i}\"\nmesh = \"tram\"\nposition = [{i}, 0, 0]\n{look}")
+    };
+    let bodies: String = (0..70).map(|i| body(i, looks[i % looks.len()])).collect();
+    let scene = parse(&format!("{red}{bodies}")).unwrap();
+    for (i, a) in scene.bodies.iter().enumerate() {
+        for (j, b) in scene.bodies.iter().enumerate() {
+            assert_eq!(
+                std::sync::Arc::ptr_eq(&a.mesh, &b.mesh),
+                i % looks.len() == j % looks.len(),
+                "{i} {j}"
+            );
+        }
+    }
+    // Other ways to say the same.
+    let same = "[[body]]\nname = \"a\"\nmesh = \"tram\"\n[[body]]\nmesh = \"tram\"\nscale = [1, 1, 1]\nrotation = { axis = [1, 2, 3], angle_deg = 0 }\n";
+    let scene = parse(same).unwrap();
+    assert!(std::sync::Arc::ptr_eq(&scene.bodies[0].mesh, &scene.bodies[1].mesh));
+}
+
+/// Bodies each with a mesh of its own: as many as anyone needs, but not any number.
+#[test]
+fn meshes_of_their_own_are_bounded() {
+    let body =
+        |i: usize, scale: usize| format!("[[body]]\nname = \"{i}\"\nmesh = \"lattice\"\nscale = {scale}\n");
+    let bodies =
+        |count: usize, scale: fn(usize) -> usize| (0..count).map(|i| body(i, scale(i))).collect::<String>();
+    assert_eq!(parse(&bodies(20, |i| i + 1)).unwrap().bodies.len(), 20);
+    assert_eq!(parse(&bodies(1000, |_| 2)).unwrap().bodies.len(), 1000);
+    let text = bodies(1000, |i| i + 1);
+    let (read, most) = peak(|| parse(&text));
+    let error = read.unwrap_err();
+    for part in
+        ["a.toml:", "vertices or triangles", "2000000, and 16 a byte", &text.len().to_string(), "share"]
+    {
+        assert!(error.contains(part), "{error}");
+    }
+    assert!(most <= most_vertices(text.len()) * BYTES_A_VERTEX, "{most} bytes");
+}
+
+/// What a body may have many of besides vertices: materials, and names; and long words that are almost right.
+#[test]
+fn much_besides_vertices_is_bounded() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.toml");
+    let parse = |text: &str| parse_scene(text, &path).map_err(|e| e.to_string());
+    let library: String = (0..3000).map(|i| format!("newmtl {i}\nKd 1 0 0\n")).collect();
+    std::fs::write(folder.path().join("a.mtl"), &library).unwrap();
+    let object = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl 1\nf 1 2 3\n";
+    std::fs::write(folder.path().join("a.obj"), object).unwrap();
+    let body = |i: usize| format!("[[body]]\nname = \"{i}\"\nmesh = \"a.obj\"\nscale = {}\n", i + 1);
+    let text: String = (0..3000).map(body).collect();
+    let (read, most) = peak(|| parse(&text));
+    assert!(read.unwrap_err().contains("vertices or triangles"));
+    let input = text.len() + library.len() + object.len();
+    assert!(most <= most_vertices(input) * BYTES_A_VERTEX, "{most} bytes");
+    let word = "x".repeat(50_000);
+    let text =
+        format!("[material.{word}]\ncolor = [1, 0, 0]\n[[body]]\nmesh = \"cube\"\nmaterial = \"{word}y\"\n");
+    judge(&text);
 }
 
 /// A body at rest is not cut, and may have more triangles than all together may be cut into.

@@ -171,6 +171,11 @@ impl Celerity {
         unit(self.0).ok().map(|axis| DVec3::from_array(axis.map(Wide::value)))
     }
 
+    /// Whether it is any motion at all.
+    pub fn moves(&self) -> bool {
+        self.0 != DVec3::ZERO
+    }
+
     /// The opposite motion.
     pub fn reversed(&self) -> Self {
         Self(-self.0)
@@ -203,6 +208,15 @@ mod tests {
             Celerity::new(x * 0.75).unwrap(),
         ] {
             assert!((other.vector() - from_beta.vector()).length() <= 2.0 * f64::EPSILON);
+        }
+    }
+
+    #[test]
+    fn what_moves_has_a_direction() {
+        for u in [0.0, -0.0, 5e-324, 1e-200, 1.0, 1e13] {
+            let celerity = Celerity::new(DVec3::Y * u).unwrap();
+            assert_eq!(celerity.moves(), u != 0.0, "{u}");
+            assert_eq!(celerity.moves(), celerity.direction().is_some(), "{u}");
         }
     }
 

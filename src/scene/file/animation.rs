@@ -68,7 +68,7 @@ fn range(source: &Source<'_>, key: &str, place: &Spanned<[f64; 2]>) -> Result<[f
 }
 
 fn read_path(source: &Source<'_>, tables: &[KeyTable], scene: &Scene) -> Result<CameraPath, SceneError> {
-    if scene.view.celerity.direction().is_some() {
+    if scene.view.celerity.moves() {
         let message = "the camera has a velocity and a path; one is enough";
         return Err(source.at(&tables[0].time, message));
     }

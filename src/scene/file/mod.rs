@@ -1,6 +1,7 @@
 //! Scenes as TOML.
 
 mod animation;
+mod body;
 mod light;
 mod source;
 mod tables;
@@ -8,18 +9,13 @@ mod tables;
 pub use source::SceneError;
 pub(super) use source::did_you_mean;
 
-use super::import::{ImportError, import, is_mesh_file};
-use super::{
-    Aim, Body, LensError, Light, Part, Projection, Scene, View, ViewError, builtin_mesh, builtin_meshes,
-};
-use crate::relativity::Motion;
-use glam::{DAffine3, DQuat, DVec3};
-use light::{Finish, read_light, read_material};
+use super::{Aim, Body, LensError, Projection, Scene, View, ViewError};
+use body::Bodies;
+use light::{read_light, read_material};
 use source::{Source, VelocityKeys, explain, velocity_keys};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use tables::{BodyTable, CameraTable, Color, Scale, SceneFile, Vector};
+use std::path::Path;
+use tables::{CameraTable, Color, SceneFile, Vector};
 use terrell_geodesic::TetradError;
 use toml::Spanned;
 
@@ -33,17 +29,17 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         let at = e.span().map(|s| s.start);
         source.fault(at, explain(e.message(), at.map_or("", |at| source.line_at(at))))
     })?;
-    let (mut notes, mut files) = (Vec::new(), vec![path.to_owned()]);
+    let mut files = vec![path.to_owned()];
     let mut finishes = BTreeMap::new();
     for (name, table) in &file.material {
         finishes.insert(name.as_str(), read_material(&source, table, &mut files)?);
     }
     let read_light = |(index, table)| read_light(&source, index, table, &mut files);
-    let lights: Vec<Light> = file.light.iter().enumerate().map(read_light).collect::<Result<_, _>>()?;
-    let mut meshes: BTreeMap<String, Vec<Part>> = BTreeMap::new();
+    let lights = file.light.iter().enumerate().map(read_light).collect::<Result<_, _>>()?;
+    let mut reader = Bodies::new(&source, &finishes, files);
     let mut bodies: Vec<Body> = Vec::new();
     for (index, table) in file.body.iter().enumerate() {
-        for body in read_body(&source, index, table, &finishes, &mut meshes, (&mut notes, &mut files))? {
+        for body in reader.read(index, table)? {
             if bodies.iter().any(|b| b.name == body.name) {
                 let message = format!("two bodies are called '{}'; give one another name", body.name);
                 return Err(source.at(&table.mesh, message));
@@ -63,6 +59,7 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         None => View::default(),
     };
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let Bodies { files, notes, .. } = reader;
     let mut scene = Scene { files, notes, lights, ..Scene::new(&name, bodies, view) };
     if let Some(table) = &file.animation {
         scene.animation = Some(animation::read_animation(&source, table, &scene)?);
@@ -152,111 +149,6 @@ pub(crate) fn parse_projection(word: &str) -> Result<Projection, String> {
     })
 }
 
-fn read_body(
-    source: &Source<'_>,
-    index: usize,
-    table: &BodyTable,
-    finishes: &BTreeMap<&str, Finish>,
-    meshes: &mut BTreeMap<String, Vec<Part>>,
-    (notes, files): (&mut Vec<String>, &mut Vec<PathBuf>),
-) -> Result<Vec<Body>, SceneError> {
-    let mesh_name = table.mesh.get_ref();
-    if !meshes.contains_key(mesh_name) {
-        let parts = read_mesh(source, &table.mesh, notes, files)?;
-        meshes.insert(mesh_name.clone(), parts);
-    }
-    // The meshes themselves are shared with other bodies as long as they stay as they are.
-    let mut parts = meshes[mesh_name].clone();
-    if let Some(word) = &table.material {
-        let name = word.get_ref();
-        let finish = finishes.get(name.as_str()).ok_or_else(|| {
-            let known = finishes.keys().copied();
-            source.at(word, format!("there is no [material.{name}]; {}", did_you_mean(name, known)))
-        })?;
-        parts.iter_mut().for_each(|part| finish.apply(Arc::make_mut(&mut part.mesh)));
-    }
-    let scale = match &table.scale {
-        None => DVec3::ONE,
-        Some(place) => {
-            let scale = match *place.get_ref() {
-                Scale::Same(s) => DVec3::splat(s),
-                Scale::Each(s) => DVec3::from_array(s),
-            };
-            if !scale.is_finite() || scale.min_element().abs().min(scale.max_element().abs()) == 0.0 {
-                return Err(source.at(place, "scale must be finite and not zero"));
-            }
-            scale
-        }
-    };
-    let rotation = match &table.rotation {
-        None => DQuat::IDENTITY,
-        Some(rotation) => {
-            let axis = source.vector("rotation.axis", &rotation.axis)?.normalize_or_zero();
-            if axis == DVec3::ZERO {
-                return Err(source.at(&rotation.axis, "rotation.axis has length zero"));
-            }
-            DQuat::from_axis_angle(
-                axis,
-                source.finite("rotation.angle_deg", &rotation.angle_deg)?.to_radians(),
-            )
-        }
-    };
-    if table.scale.is_some() || table.rotation.is_some() {
-        for part in &mut parts {
-            part.place(DAffine3::from_scale_rotation_translation(scale, rotation, DVec3::ZERO));
-            part.mesh.check().map_err(|e| source.at(&table.mesh, e))?;
-        }
-    }
-    if let Some(rate) = &table.animation_rate {
-        let seconds = source.finite("animation_rate", rate)?;
-        parts.iter_mut().filter_map(|part| part.clip.as_mut()).for_each(|clip| clip.rate = seconds);
-    }
-    let motion = Motion {
-        celerity: source.celerity(&velocity_keys!(table))?,
-        origin: source.event(&table.time, &table.position)?,
-    };
-    let stem = Path::new(mesh_name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let name = table.name.clone().unwrap_or(if index == 0 { stem } else { format!("{stem}{index}") });
-    // What is animated within it goes by its own name, too.
-    let named = |(i, part): (usize, Part)| Body {
-        name: if i == 0 { name.clone() } else { format!("{name}.{}", part.name) },
-        motion,
-        ..part.into_body()
-    };
-    Ok(parts.into_iter().enumerate().map(named).collect())
-}
-
-fn read_mesh(
-    source: &Source<'_>,
-    word: &Spanned<String>,
-    notes: &mut Vec<String>,
-    files: &mut Vec<PathBuf>,
-) -> Result<Vec<Part>, SceneError> {
-    let name = word.get_ref();
-    if let Some(mesh) = builtin_mesh(name) {
-        return Ok(vec![Part::still(name.clone(), mesh)]);
-    }
-    if !is_mesh_file(Path::new(name)) {
-        let message = format!(
-            "there is no mesh '{name}' built in ({}), and only .obj, .gltf and .glb files can be read",
-            did_you_mean(name, builtin_meshes())
-        );
-        return Err(source.at(word, message));
-    }
-    let file = source.path.parent().unwrap_or(Path::new("")).join(name);
-    let imported = import(&file).map_err(|e: ImportError| source.at(word, e))?;
-    if imported.moves() {
-        notes.push(format!("{name}: velocities in it are left out; a [[body]] moves as a whole"));
-    }
-    if !imported.lights.is_empty() {
-        notes.push(format!("{name}: lights in it are left out; a scene's are its [[light]]s"));
-    }
-    let imported = imported.settled();
-    notes.extend(imported.notes);
-    files.extend(imported.files);
-    Ok(imported.parts)
-}
-
 fn read_color(source: &Source<'_>, place: &Spanned<Color>) -> Result<[f32; 3], SceneError> {
     match place.get_ref() {
         Color::Linear(c) if c.iter().all(|v| v.is_finite() && *v >= 0.0) => Ok(*c),
@@ -275,6 +167,7 @@ fn read_color(source: &Source<'_>, place: &Spanned<Color>) -> Result<[f32; 3], S
 mod tests {
     use super::*;
     use crate::scene::Paint;
+    use glam::DVec3;
     use terrell_geodesic::Event;
 
     fn error(text: &str) -> String {

@@ -1,9 +1,10 @@
 //! The text of a scene file: values out of it, and faults told by line and key.
 
 use super::tables::Vector;
+use crate::scene::velocity::Velocity;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
-use terrell_geodesic::{Celerity, CelerityError, Event};
+use terrell_geodesic::{Celerity, Event};
 use toml::Spanned;
 
 /// Why a scene cannot be read: where, what, and what to try.
@@ -34,6 +35,22 @@ pub(super) struct VelocityKeys<'a> {
     pub gamma: &'a Option<Spanned<f64>>,
     pub rapidity: &'a Option<Spanned<f64>>,
     pub direction: &'a Option<Vector>,
+}
+
+impl VelocityKeys<'_> {
+    /// Where the value of a key stands.
+    fn place(&self, key: &str) -> Option<usize> {
+        let start = |v: &Spanned<f64>| v.span().start;
+        let place = |v: &Vector| v.span().start;
+        match key {
+            "velocity" => self.velocity.as_ref().map(place),
+            "celerity" => self.celerity.as_ref().map(place),
+            "beta" => self.beta.as_ref().map(start),
+            "gamma" => self.gamma.as_ref().map(start),
+            "rapidity" => self.rapidity.as_ref().map(start),
+            _ => self.direction.as_ref().map(place),
+        }
+    }
 }
 
 /// The velocity keys of a table: cameras and bodies have the same ones.
@@ -100,52 +117,28 @@ impl Source<'_> {
     }
 
     pub fn celerity(&self, keys: &VelocityKeys<'_>) -> Result<Celerity, SceneError> {
-        let direction = match keys.direction {
-            Some(d) => self.vector("direction", d)?,
-            None => DVec3::X,
+        let vector = |v: &Vector| DVec3::from_array(*v.get_ref());
+        let number = |v: &Spanned<f64>| *v.get_ref();
+        let velocity = Velocity {
+            velocity: keys.velocity.as_ref().map(vector),
+            celerity: keys.celerity.as_ref().map(vector),
+            beta: keys.beta.as_ref().map(number),
+            gamma: keys.gamma.as_ref().map(number),
+            rapidity: keys.rapidity.as_ref().map(number),
+            direction: keys.direction.as_ref().map(|d| self.vector("direction", d)).transpose()?,
         };
-        type Made<'a> = (&'static str, usize, Result<Celerity, CelerityError>);
-        let mut found: Vec<Made<'_>> = Vec::new();
-        if let Some(v) = keys.velocity {
-            found.push(("velocity", v.span().start, Celerity::from_beta(DVec3::from_array(*v.get_ref()))));
-        }
-        if let Some(v) = keys.celerity {
-            found.push(("celerity", v.span().start, Celerity::new(DVec3::from_array(*v.get_ref()))));
-        }
-        let vectors = found.len();
-        if let Some(v) = keys.beta {
-            let unit = direction.normalize_or_zero();
-            let made = if unit == DVec3::ZERO {
-                Err(CelerityError::NoDirection)
-            } else {
-                Celerity::from_beta(unit * *v.get_ref())
-            };
-            found.push(("beta", v.span().start, made));
-        }
-        if let Some(v) = keys.gamma {
-            found.push(("gamma", v.span().start, Celerity::from_gamma(*v.get_ref(), direction)));
-        }
-        if let Some(v) = keys.rapidity {
-            found.push(("rapidity", v.span().start, Celerity::from_rapidity(*v.get_ref(), direction)));
-        }
-        match (found.as_slice(), keys.direction) {
-            ([], None) => Ok(Celerity::at_rest()),
-            ([], Some(d)) => Err(self.at(d, "a direction needs a speed: add beta, gamma or rapidity")),
-            ([(key, ..)], Some(d)) if vectors == 1 => {
-                Err(self.at(d, format!("{key} already has a direction; remove one of the two")))
-            }
-            ([(key, at, made)], _) => made.clone().map_err(|e| self.fault(Some(*at), format!("{key}: {e}"))),
-            ([(one, ..), (other, at, _), ..], _) => {
-                Err(self.fault(Some(*at), format!("both {one} and {other} are given; one is enough")))
-            }
-        }
+        let told = velocity.told().map_err(|e| self.fault(keys.place(e.key), e.message))?;
+        Ok(told.unwrap_or(Celerity::at_rest()))
     }
 }
 
 /// The nearest of the names, if near enough to be what was meant.
 fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // What is longer is no slip of the pen, and comparing it would take memory as the product of the lengths.
+    const LONGEST: usize = 200;
     names
         .into_iter()
+        .filter(|name| word.len().max(name.len()) <= LONGEST)
         .map(|name| (strsim::damerau_levenshtein(word, name), name))
         .min()
         .filter(|(distance, name)| *distance <= 1 + name.len() / 3)

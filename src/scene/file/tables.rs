@@ -44,6 +44,7 @@ pub(super) struct CameraTable {
 pub(super) struct BodyTable {
     pub name: Option<String>,
     pub mesh: Spanned<String>,
+    pub file_scene: Option<Spanned<String>>,
     pub time: Option<Spanned<f64>>,
     pub position: Option<Vector>,
     pub velocity: Option<Vector>,

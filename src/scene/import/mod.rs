@@ -18,12 +18,25 @@ pub struct Imported {
     pub parts: Vec<Part>,
     /// The camera in it, if any.
     pub view: Option<View>,
+    /// How many cameras there are to choose from.
+    pub cameras: usize,
     /// The lights in it.
     pub lights: Vec<Light>,
+    /// Bytes of the files that were read, pictures left out.
+    pub bytes: usize,
     /// The files that were read.
     pub files: Vec<PathBuf>,
     /// What was passed over, for people to read.
     pub notes: Vec<String>,
+}
+
+/// Which scene and camera of a glTF file, by name or number from 1; a name goes before a number.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Choice {
+    /// The scene; if none is asked for, the file's own default, else its first.
+    pub scene: Option<String>,
+    /// The camera, numbered as they are met in the scene's tree; if none is asked for, the first with perspective.
+    pub camera: Option<String>,
 }
 
 /// Something in a mesh file that moves on its own.
@@ -73,7 +86,7 @@ impl Part {
 impl Imported {
     /// Whether the file says that anything in it moves.
     pub fn moves(&self) -> bool {
-        self.parts.iter().any(|p| p.motion.celerity.direction().is_some())
+        self.parts.iter().any(|p| p.motion.celerity.moves())
     }
 
     /// All meshes in one, as they are where nothing moves and nothing is animated.
@@ -131,6 +144,14 @@ pub enum ImportError {
         /// Why.
         source: MeshError,
     },
+    /// The scene or camera asked for is not there, or cannot be used.
+    #[error("{}: {message}", .path.display())]
+    Choice {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong and what there is.
+        message: String,
+    },
     /// Not a format we read.
     #[error("{}: only .obj, .gltf and .glb meshes can be read", .0.display())]
     UnknownFormat(PathBuf),
@@ -139,6 +160,11 @@ pub enum ImportError {
 /// Whether a path has the ending of a mesh file we read.
 pub fn is_mesh_file(path: &Path) -> bool {
     matches!(ending(path).as_str(), "obj" | "gltf" | "glb")
+}
+
+/// Whether a path has the ending of a file that may hold several scenes and cameras.
+pub fn has_scenes(path: &Path) -> bool {
+    matches!(ending(path).as_str(), "gltf" | "glb")
 }
 
 fn ending(path: &Path) -> String {
@@ -150,6 +176,18 @@ fn ending(path: &Path) -> String {
 /// # Errors
 /// If it cannot be read, is malformed, or holds nothing that can be drawn.
 pub fn import(path: &Path) -> Result<Imported, ImportError> {
+    import_choosing(path, &Choice::default())
+}
+
+/// Reads an OBJ, glTF or GLB file; of a glTF file, the scene and the camera asked for.
+///
+/// # Errors
+/// As [`import`]; and if there is no such scene or camera, or the file is of a format that has none.
+pub fn import_choosing(path: &Path, choice: &Choice) -> Result<Imported, ImportError> {
+    if *choice != Choice::default() && !has_scenes(path) {
+        let message = "only .gltf and .glb files have scenes and cameras to choose from".to_owned();
+        return Err(ImportError::Choice { path: path.to_owned(), message });
+    }
     let files = RefCell::new(Vec::new());
     let contents = |path: &Path| {
         files.borrow_mut().push(path.to_owned());
@@ -157,7 +195,7 @@ pub fn import(path: &Path) -> Result<Imported, ImportError> {
     };
     let mut imported = match ending(path).as_str() {
         "obj" => obj::parse(&contents(path)?, path, &contents)?,
-        "gltf" | "glb" => gltf::parse(&contents(path)?, path, &contents)?,
+        "gltf" | "glb" => gltf::parse(&contents(path)?, path, choice, &contents)?,
         _ => return Err(ImportError::UnknownFormat(path.to_owned())),
     };
     imported.files = files.into_inner();

@@ -2,7 +2,7 @@ use super::picture::decode;
 use super::{ImportError, Imported, Part, ReadFile, beside, note_once, without_textures};
 use crate::scene::{Material, Mesh, Paint, Picture, Texture, Wrap};
 use glam::{DAffine2, DVec2, DVec3};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,6 +26,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     let notes = RefCell::new(Vec::new());
     let options = tobj::LoadOptions { single_index: true, ..tobj::LoadOptions::default() };
     let libraries = RefCell::new(path.to_owned());
+    let read_bytes = Cell::new(bytes.len());
     let named = RefCell::new(BTreeSet::new());
     let load_materials = |library: &Path| {
         let library = beside(path, library);
@@ -35,6 +36,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         }
         match read(&library) {
             Ok(bytes) => {
+                read_bytes.set(read_bytes.get() + bytes.len());
                 let (text, _) = cleaned(&String::from_utf8_lossy(&bytes));
                 *libraries.borrow_mut() = library;
                 tobj::load_mtl_buf(&mut without_odd_colors(&text).as_bytes())
@@ -129,7 +131,8 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         notes.push("the mesh has no colours; painted in clay by the direction its faces look".into());
     }
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Imported { parts: vec![Part::still(name, mesh)], notes, ..Imported::default() })
+    let (parts, bytes) = (vec![Part::still(name, mesh)], read_bytes.get());
+    Ok(Imported { parts, bytes, notes, ..Imported::default() })
 }
 
 /// The names of the materials that faces ask for.

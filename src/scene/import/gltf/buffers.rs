@@ -1,7 +1,7 @@
 use super::super::{ImportError, ReadFile, beside};
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Semantic;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -40,6 +40,16 @@ impl Buffers {
             Ok(contents)
         });
         Ok(Self(contents.collect::<Result<_, _>>()?))
+    }
+
+    /// How many bytes they have that are not in the file itself, each file's counted once.
+    pub fn bytes_beside(&self, file: &gltf::Gltf) -> usize {
+        let mut counted = HashSet::new();
+        let beside = file.buffers().zip(&self.0).filter(|(buffer, _)| match buffer.source() {
+            gltf::buffer::Source::Bin => false,
+            gltf::buffer::Source::Uri(uri) => !uri.starts_with("data:") && counted.insert(uri.to_owned()),
+        });
+        beside.map(|(_, contents)| contents.len()).sum()
     }
 
     /// All of a buffer.

@@ -1,3 +1,4 @@
+use crate::scene::velocity::Velocity;
 use glam::DVec3;
 use serde_json::Value;
 use terrell_geodesic::Celerity;
@@ -40,40 +41,16 @@ impl Extras {
                 _ => Err(format!("{key}: {value} is not a list of three finite numbers")),
             }
         };
-        let along = vector("direction")?;
-        let direction = along.unwrap_or(DVec3::X);
-        if direction == DVec3::ZERO {
-            return Err("direction has length zero".into());
-        }
-        let mut found = Vec::new();
-        if let Some(beta) = vector("velocity")? {
-            found.push(("velocity", Celerity::from_beta(beta)));
-        }
-        if let Some(u) = vector("celerity")? {
-            found.push(("celerity", Celerity::new(u)));
-        }
-        if let Some(beta) = number("beta")? {
-            found.push(("beta", Celerity::from_beta(direction.normalize_or_zero() * beta)));
-        }
-        if let Some(gamma) = number("gamma")? {
-            found.push(("gamma", Celerity::from_gamma(gamma, direction)));
-        }
-        if let Some(rapidity) = number("rapidity")? {
-            found.push(("rapidity", Celerity::from_rapidity(rapidity, direction)));
-        }
-        let celerity = match found.as_slice() {
-            [] if along.is_some() => return Err("direction needs a speed: beta, gamma or rapidity".into()),
-            [] => None,
-            [(key @ ("velocity" | "celerity"), _)] if along.is_some() => {
-                return Err(format!("{key} already has a direction; remove one of the two"));
-            }
-            [(key, made)] => Some(made.clone().map_err(|e| format!("{key}: {e}"))?),
-            [(one, _), (other, _), ..] => {
-                return Err(format!("both {one} and {other} are given; one is enough"));
-            }
+        let velocity = Velocity {
+            velocity: vector("velocity")?,
+            celerity: vector("celerity")?,
+            beta: number("beta")?,
+            gamma: number("gamma")?,
+            rapidity: number("rapidity")?,
+            direction: vector("direction")?,
         };
         Ok(Self {
-            celerity,
+            celerity: velocity.told().map_err(|e| e.message)?,
             time: number("time")?.unwrap_or(0.0),
             nearest: keys.get("nearest").and_then(Value::as_str).map(str::to_owned),
         })

@@ -1,19 +1,26 @@
-//! glTF 2.0 and GLB: the default scene's meshes with their node transforms, materials and textures, what moves by
+//! glTF 2.0 and GLB: a scene's meshes with their node transforms, materials and textures, what moves by
 //! `extras` and by animations, and the camera. Coordinates stay the file's own (y up).
 
 mod buffers;
+mod choice;
 mod extras;
 mod motion;
 mod reader;
 mod surface;
 
-use super::{ImportError, Imported, ReadFile};
+use super::{Choice, ImportError, Imported, ReadFile};
+use crate::scene::room::Room;
 use buffers::Buffers;
 use reader::Reader;
 use std::path::Path;
 
 /// Reads a file's contents.
-pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imported, ImportError> {
+pub(super) fn parse(
+    bytes: &[u8],
+    path: &Path,
+    choice: &Choice,
+    read: ReadFile<'_>,
+) -> Result<Imported, ImportError> {
     let fault = |message: String| ImportError::Contents { path: path.to_owned(), line: None, message };
     if bytes.is_empty() {
         return Err(fault("the file is empty".into()));
@@ -29,9 +36,21 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
             required.join(", ")
         )));
     }
+    let not_there = |message: String| ImportError::Choice { path: path.to_owned(), message };
+    let scene = choice::scene(&file, choice.scene.as_deref()).map_err(not_there)?;
     let buffers = Buffers::read(&file, path, read)?;
-    Reader::new(&file, buffers, path, read)?.scene(&file).map_err(fault)
+    let room = Room::new(bytes.len() + buffers.bytes_beside(&file), REMEDY);
+    let mut reader = Reader::new(&file, buffers, room, path, read)?;
+    if let Some(scene) = scene.as_ref().filter(|_| choice.scene.is_none()) {
+        reader.note_scene(scene, file.scenes().len());
+    }
+    reader.scene(&file, scene).map_err(fault)?;
+    reader.choose_camera(choice.camera.as_deref()).map_err(not_there)?;
+    Ok(reader.finish())
 }
+
+/// What to do with files that use their meshes too often.
+const REMEDY: &str = "use its meshes less often, or in files of their own";
 
 /// Extensions a file may require that change nothing we read, or that the reader knows.
 const KNOWN_EXTENSIONS: [&str; 4] = [
@@ -94,7 +113,11 @@ mod tests {
     use super::*;
 
     fn load(json: &str) -> Result<Imported, ImportError> {
-        parse(json.as_bytes(), Path::new("test.gltf"), &|path| {
+        load_choosing(json, &Choice::default())
+    }
+
+    fn load_choosing(json: &str, choice: &Choice) -> Result<Imported, ImportError> {
+        parse(json.as_bytes(), Path::new("test.gltf"), choice, &|path| {
             Err(ImportError::UnknownFormat(path.to_owned()))
         })
     }
@@ -156,7 +179,7 @@ mod tests {
             glb(1, 20, 0),
             glb(2, 20, 0),
         ] {
-            assert!(parse(&bytes, Path::new("a.glb"), &|_| Ok(vec![])).is_err());
+            assert!(parse(&bytes, Path::new("a.glb"), &Choice::default(), &|_| Ok(vec![])).is_err());
         }
     }
 
@@ -175,6 +198,10 @@ mod tests {
     /// A file of the triangle above with texture coordinates, whose buffer also holds a ramp of times (0, 1, 2) and
     /// three quarter turns about z.
     fn file(json: &str) -> Result<Imported, ImportError> {
+        file_choosing(json, None, None)
+    }
+
+    fn file_choosing(json: &str, scene: Option<&str>, camera: Option<&str>) -> Result<Imported, ImportError> {
         let half = std::f32::consts::FRAC_1_SQRT_2;
         let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
         let uv = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
@@ -187,7 +214,8 @@ mod tests {
         image::codecs::png::PngEncoder::new(&mut png)
             .write_image(&[255, 0, 0, 0, 255, 0], 2, 1, image::ExtendedColorType::Rgb8)
             .unwrap();
-        load(&format!(
+        let choice = Choice { scene: scene.map(str::to_owned), camera: camera.map(str::to_owned) };
+        let text = format!(
             r#"{{"asset": {{"version": "2.0"}},
             "accessors": [
               {{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}},
@@ -202,7 +230,8 @@ mod tests {
             {json} }}"#,
             base64(&bytes),
             base64(&png)
-        ))
+        );
+        load_choosing(&text, &choice)
     }
 
     const PLAIN: &str = r#""materials": [{"doubleSided": true}]"#;
@@ -295,6 +324,50 @@ mod tests {
         let mut scene = scene;
         scene.set_animation_rate(0.01);
         assert!(scene.check_animations().is_ok());
+    }
+
+    /// Two scenes, the second with three cameras; nodes 1 and 3 hold the same one.
+    const TWO_SCENES: &str = r#""scenes": [{"nodes": [0], "name": "day"}, {"nodes": [1, 4], "name": "night"}],
+        "scene": 0, "materials": [{}],
+        "cameras": [{"type": "perspective", "name": "lens", "perspective": {"yfov": 0.5, "znear": 0.1}},
+          {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "zfar": 9, "znear": 0.1}}],
+        "nodes": [{"mesh": 0}, {"camera": 1, "name": "plan", "children": [2]},
+          {"camera": 0, "translation": [2, 0, 0]}, {"camera": 0, "name": "2", "translation": [3, 0, 0]},
+          {"mesh": 0, "children": [3]}]"#;
+
+    #[test]
+    fn scenes_and_cameras_are_chosen_by_name_or_number() {
+        let x = |scene, camera| {
+            let imported = file_choosing(TWO_SCENES, scene, camera).unwrap();
+            imported.view.map(|view| view.event.position().x)
+        };
+        assert_eq!(x(None, None), None);
+        assert_eq!(x(Some("day"), None), None);
+        // In the order in which they are met; the first with perspective.
+        assert_eq!(x(Some("night"), None), Some(2.0));
+        assert_eq!(x(Some("2"), Some("3")), Some(3.0));
+        assert_eq!(x(Some("2"), Some("lens")), Some(2.0));
+        // A name goes before a number.
+        assert_eq!(x(Some("2"), Some("2")), Some(3.0));
+        let notes = file(TWO_SCENES).unwrap().notes;
+        assert!(notes[0].contains("of 2 scenes number 1 ('day') is shown; --file-scene"), "{notes:?}");
+        let night = file_choosing(TWO_SCENES, Some("night"), None).unwrap();
+        assert_eq!(night.cameras, 3);
+        assert!(!night.notes.iter().any(|n| n.contains("scenes")), "{:?}", night.notes);
+        for (scene, camera, parts) in [
+            (Some("nigt"), None, ["no scene 'nigt'", "'night'"]),
+            (Some("dusk and dawn"), None, ["dusk", "known: day, night"]),
+            (Some("0"), None, ["no scene '0'", "from 1 to 2: day, night"]),
+            (Some("3"), None, ["no scene '3'", "from 1 to 2: day, night"]),
+            (None, Some("1"), ["no camera '1'", "there is none"]),
+            (Some("night"), Some("plna"), ["no camera 'plna'", "'plan'"]),
+            (Some("night"), Some("4"), ["no camera '4'", "from 1 to 3: plan, lens, 2"]),
+            (Some("night"), Some("plan"), ["camera 'plan'", "perspective"]),
+        ] {
+            let error = file_choosing(TWO_SCENES, scene, camera).unwrap_err();
+            assert!(matches!(error, ImportError::Choice { .. }), "{error}");
+            parts.iter().for_each(|part| assert!(error.to_string().contains(part), "{error}"));
+        }
     }
 
     #[test]

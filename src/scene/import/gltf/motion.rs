@@ -1,5 +1,6 @@
 use super::super::note_once;
 use super::buffers::Buffers;
+use crate::scene::room::Room;
 use crate::scene::{Between, Joint, Track};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::accessor::{DataType, Dimensions};
@@ -19,7 +20,12 @@ struct Channels {
 }
 
 impl Animated {
-    pub fn read(file: &gltf::Gltf, buffers: &Buffers, notes: &mut Vec<String>) -> Result<Self, String> {
+    pub fn read(
+        file: &gltf::Gltf,
+        buffers: &Buffers,
+        room: &mut Room,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, String> {
         let mut out = Self::default();
         let mut animations = file.animations();
         let Some(animation) = animations.next() else { return Ok(out) };
@@ -40,6 +46,8 @@ impl Animated {
             };
             buffers.check(&sampler.input(), "times", &[(Dimensions::Scalar, DataType::F32)])?;
             buffers.check(&sampler.output(), "values", allowed)?;
+            // Channels may share what they read, but each keeps it by itself.
+            room.take(sampler.input().count().max(sampler.output().count()))?;
             let between = match sampler.interpolation() {
                 Interpolation::Step => Between::Step,
                 Interpolation::Linear => Between::Linear,

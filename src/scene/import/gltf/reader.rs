@@ -1,19 +1,22 @@
 use super::super::{ImportError, Imported, Part, ReadFile, note_once, without_textures};
 use super::buffers::{Buffers, INDEX_TYPES, allowed_types};
+use super::choice::{self, Found};
 use super::extras::Extras;
 use super::motion::{Animated, placement};
 use super::surface::Surfaces;
 use crate::relativity::Motion;
+use crate::scene::room::{Room, named_size, size};
 use crate::scene::{Aim, Clip, Joint, Light, LightKind, Mesh, Paint, Projection, View};
 use crate::spectrum::Spectrum;
 use glam::{DAffine3, DVec3};
 use gltf::mesh::Mode;
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::Arc;
 use terrell_geodesic::{Celerity, Event, FourVector, World};
 
 /// A file on its way to parts.
-pub(super) struct Reader {
+pub(super) struct Reader<'a> {
     name: String,
     buffers: Buffers,
     surfaces: Surfaces,
@@ -22,17 +25,14 @@ pub(super) struct Reader {
     z_up: bool,
     parts: Vec<Part>,
     view: Option<View>,
+    cameras: Vec<Found<'a>>,
     lights: Vec<Light>,
     notes: Vec<String>,
     /// Whether any primitive has a material or vertex colours.
     colored: bool,
     visited: Vec<bool>,
-    /// So far, or triangles where there are more of these.
-    vertices: usize,
+    room: Room,
 }
-
-/// A small file can use a mesh any number of times; each is kept by itself.
-const MOST_VERTICES: usize = 50_000_000;
 
 /// Where the children of a node stand.
 #[derive(Clone)]
@@ -40,25 +40,32 @@ struct Place {
     /// The part that is, or none that has a mesh yet.
     part: Option<usize>,
     /// What it is called, once it has one.
-    name: String,
+    name: Rc<str>,
     motion: Motion,
     /// Placements down to the last animated one, if any is.
-    joints: Vec<Joint>,
+    joints: Rc<[Joint]>,
     /// Within the last animated placement, or within the rest frame.
     within: DAffine3,
 }
 
-impl Reader {
+impl Place {
+    fn clip(&self) -> Clip {
+        Clip::new(self.joints.to_vec())
+    }
+}
+
+impl<'a> Reader<'a> {
     pub fn new(
         file: &gltf::Gltf,
         buffers: Buffers,
+        mut room: Room,
         path: &Path,
         read: ReadFile<'_>,
     ) -> Result<Self, ImportError> {
         let fault = |message| ImportError::Contents { path: path.to_owned(), line: None, message };
         let mut notes = Vec::new();
         let surfaces = Surfaces::read(file, &buffers, path, read, &mut notes);
-        let animated = Animated::read(file, &buffers, &mut notes).map_err(fault)?;
+        let animated = Animated::read(file, &buffers, &mut room, &mut notes).map_err(fault)?;
         let generator = file.document.as_json().asset.generator.as_deref().unwrap_or_default();
         Ok(Self {
             name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
@@ -68,30 +75,37 @@ impl Reader {
             z_up: generator.contains("Blender"),
             parts: Vec::new(),
             view: None,
+            cameras: Vec::new(),
             lights: Vec::new(),
             notes,
             colored: false,
             visited: vec![false; file.nodes().len()],
-            vertices: 0,
+            room,
         })
     }
 
-    /// The default scene, else the first, else all meshes.
-    pub fn scene(mut self, file: &gltf::Gltf) -> Result<Imported, String> {
+    /// Tells which scene is shown of several, where none was asked for.
+    pub fn note_scene(&mut self, scene: &gltf::Scene<'_>, count: usize) {
+        if count > 1 {
+            let name = scene.name().map_or(String::new(), |n| format!(" ('{n}')"));
+            let number = scene.index() + 1;
+            self.note(&format!(
+                "of {count} scenes number {number}{name} is shown; --file-scene (file_scene in a [[body]]) takes another"
+            ));
+        }
+    }
+
+    /// Reads a scene; all meshes, where a file has none.
+    pub fn scene(&mut self, file: &'a gltf::Gltf, scene: Option<gltf::Scene<'a>>) -> Result<(), String> {
         let still = Place {
             part: None,
-            name: self.name.clone(),
+            name: self.name.as_str().into(),
             motion: Motion::at_rest(DVec3::ZERO),
-            joints: Vec::new(),
+            joints: Rc::new([]),
             within: DAffine3::IDENTITY,
         };
-        match file.default_scene().or_else(|| file.scenes().next()) {
+        match scene {
             Some(scene) => {
-                if file.scenes().len() > 1 {
-                    let name = scene.name().map_or(String::new(), |n| format!(" ('{n}')"));
-                    let number = scene.index() + 1;
-                    self.note(&format!("of {} scenes number {number}{name} is shown", file.scenes().len()));
-                }
                 let mut waiting: Vec<_> = scene.nodes().map(|node| (node, still.clone())).collect();
                 waiting.reverse();
                 self.trees(waiting)?;
@@ -103,11 +117,11 @@ impl Reader {
                 }
             }
         }
-        self.finish()
+        Ok(())
     }
 
     /// Trees of nodes, as deep as they may be; the last is next.
-    fn trees<'a>(&mut self, mut waiting: Vec<(gltf::Node<'a>, Place)>) -> Result<(), String> {
+    fn trees(&mut self, mut waiting: Vec<(gltf::Node<'a>, Place)>) -> Result<(), String> {
         // What is still belongs together, wherever it is in the tree.
         let mut still = None;
         while let Some((node, mut place)) = waiting.pop() {
@@ -126,9 +140,11 @@ impl Reader {
             let own = placement(&node);
             match self.animated.joint(&node) {
                 Some(joint) => {
-                    place.joints.extend([Joint::Fixed(place.within), joint]);
+                    self.room.take(place.joints.len() + 2)?;
+                    let joints = place.joints.iter().cloned().chain([Joint::Fixed(place.within), joint]);
+                    place.joints = joints.collect();
                     (place.part, place.within) = (None, DAffine3::IDENTITY);
-                    place.name = named(&node);
+                    place.name = named(&node).into();
                 }
                 None => place.within *= own,
             }
@@ -149,10 +165,10 @@ impl Reader {
                 self.note("skins are not animated: the mesh is drawn as it was bound");
             }
             if let Some(light) = node.light() {
-                self.light(&node, &light, &place);
+                self.light(&node, &light, &place)?;
             }
             if let Some(camera) = node.camera() {
-                self.camera(&camera, &place, &extras)?;
+                self.camera(&node, &camera, &place, &extras);
             }
             // Children in order, before siblings.
             let first = waiting.len();
@@ -181,7 +197,7 @@ impl Reader {
         let origin = Event::at(time + event.t(), event.position());
         place.within = DAffine3::from_translation(-at) * place.within;
         place.motion = Motion { celerity, origin };
-        (place.part, place.name) = (None, named(node));
+        (place.part, place.name) = (None, named(node).into());
         Ok(())
     }
 
@@ -191,7 +207,8 @@ impl Reader {
             let part = match place.part {
                 Some(part) => part,
                 None => {
-                    let clip = (!place.joints.is_empty()).then(|| Clip::new(place.joints.clone()));
+                    self.room.take(named_size(&place.name) + place.joints.len())?;
+                    let clip = (!place.joints.is_empty()).then(|| place.clip());
                     let name = self.unused(&place.name);
                     let (motion, mesh) = (place.motion, Mesh::default());
                     self.parts.push(Part { name, mesh: Arc::new(mesh), motion, clip });
@@ -199,12 +216,8 @@ impl Reader {
                 }
             };
             let whole = Arc::make_mut(&mut self.parts[part].mesh);
-            self.vertices += read.vertex_count().max(read.triangles.len());
-            if self.vertices > MOST_VERTICES {
-                return Err(format!(
-                    "with every use of its meshes counted it has more than {MOST_VERTICES} vertices or triangles; use it in parts"
-                ));
-            }
+            let materials = read.material.first().map(|m| &self.surfaces.materials[*m as usize]);
+            self.room.take(size(&read) + materials.map_or(0, |material| named_size(&material.name)))?;
             whole.append(read.placed(&place.within));
         }
         Ok(())
@@ -285,26 +298,20 @@ impl Reader {
         Ok(Some(out))
     }
 
-    /// The first camera is the view.
-    fn camera(&mut self, camera: &gltf::Camera<'_>, place: &Place, extras: &Extras) -> Result<(), String> {
-        if self.view.is_some() {
-            self.note("of several cameras the first is used");
-            return Ok(());
-        }
+    /// A camera to choose from.
+    fn camera(&mut self, node: &gltf::Node<'a>, camera: &gltf::Camera<'a>, place: &Place, extras: &Extras) {
+        let names = [node.name(), camera.name()];
+        let animated = !place.joints.is_empty();
         let gltf::camera::Projection::Perspective(lens) = camera.projection() else {
-            self.note("a camera without perspective is left out");
-            return Ok(());
+            self.cameras.push(Found { names, view: None, animated });
+            return;
         };
-        if !place.joints.is_empty() {
-            self.note("the camera's animation is not followed: it stays as at its beginning");
-        }
-        let joints = Clip::new(place.joints.clone());
-        let within = joints.pose(0.0) * place.within;
+        let within = place.clip().pose(0.0) * place.within;
         let event = event(&place.motion, within.translation);
         // With a velocity, it is the time of its motion, and in there already.
         let time = if extras.celerity.is_some() { 0.0 } else { extras.time };
         let direction = |v: DVec3| within.transform_vector3(v);
-        self.view = Some(View {
+        let view = View {
             event: Event::at(event.t() + time, event.position()),
             celerity: place.motion.celerity,
             aim: Aim::Forward(direction(-DVec3::Z)),
@@ -313,18 +320,38 @@ impl Reader {
             fov_deg: Some(f64::from(lens.yfov()).to_degrees()),
             nearest: extras.nearest.clone(),
             ..View::default()
-        });
+        };
+        self.cameras.push(Found { names, view: Some(view), animated });
+    }
+
+    /// The camera asked for becomes the view; else the first with perspective.
+    pub fn choose_camera(&mut self, wanted: Option<&str>) -> Result<(), String> {
+        if wanted.is_none() && self.cameras.iter().any(|camera| camera.view.is_none()) {
+            self.note("a camera without perspective is left out");
+        }
+        let Some(found) = choice::camera(&self.cameras, wanted)? else { return Ok(()) };
+        self.view = found.view.clone();
+        if found.animated {
+            self.note("the camera's animation is not followed: it stays as at its beginning");
+        }
         Ok(())
     }
 
-    fn light(&mut self, node: &gltf::Node<'_>, light: &gltf::khr_lights_punctual::Light<'_>, place: &Place) {
+    fn light(
+        &mut self,
+        node: &gltf::Node<'_>,
+        light: &gltf::khr_lights_punctual::Light<'_>,
+        place: &Place,
+    ) -> Result<(), String> {
         use gltf::khr_lights_punctual::Kind;
-        let within = Clip::new(place.joints.clone()).pose(0.0) * place.within;
+        let within = place.clip().pose(0.0) * place.within;
         // Lights look along −z.
         let direction = within.transform_vector3(-DVec3::Z).normalize_or_zero();
         let position = within.translation;
+        let name = light.name().map_or_else(|| named(node), str::to_owned);
+        self.room.take(named_size(&name))?;
         self.lights.push(Light {
-            name: light.name().map_or_else(|| named(node), str::to_owned),
+            name,
             kind: match light.kind() {
                 Kind::Directional => LightKind::Distant { direction },
                 Kind::Point => LightKind::Point { position },
@@ -338,9 +365,10 @@ impl Reader {
             strength: light.intensity().into(),
             motion: place.motion,
         });
+        Ok(())
     }
 
-    fn finish(mut self) -> Result<Imported, String> {
+    pub fn finish(mut self) -> Imported {
         for part in &mut self.parts {
             // Of all materials those it uses, in their order.
             let mut new = vec![None; self.surfaces.materials.len()];
@@ -359,13 +387,15 @@ impl Reader {
         if !self.colored {
             self.note("the mesh has no colours; painted in clay by the direction its faces look");
         }
-        Ok(Imported {
+        Imported {
             parts: self.parts,
             view: self.view,
+            cameras: self.cameras.len(),
             lights: self.lights,
+            bytes: self.room.bytes(),
             notes: self.notes,
             ..Imported::default()
-        })
+        }
     }
 
     fn note(&mut self, note: &str) {
