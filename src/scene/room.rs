@@ -1,4 +1,4 @@
-use super::Mesh;
+use super::{Material, Mesh};
 
 /// The most vertices, or triangles where there are more, that may be kept of so many bytes of files.
 ///
@@ -52,7 +52,9 @@ impl Room {
 
 /// What a mesh takes of a [`Room`].
 pub(super) fn size(mesh: &Mesh) -> usize {
-    let materials: usize = mesh.materials.iter().map(|material| named_size(&material.name)).sum();
+    // A vertex takes some 64 bytes.
+    let own = size_of::<Material>() / 64;
+    let materials: usize = mesh.materials.iter().map(|material| own + named_size(&material.name)).sum();
     mesh.vertex_count().max(mesh.triangles.len()).max(materials)
 }
 
