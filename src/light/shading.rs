@@ -169,13 +169,15 @@ impl Tables {
             return Ok(table.clone());
         }
         let response = Response::new(&light.spectrum, light.color, beyond)?;
-        let (range, matrix) = (self.range, |lamp: f64, d: f64| response.matrix(lamp, d));
+        let (range, coarse) = (self.range, response.clone().coarse());
         let table = match incidence {
             Incidence::Distant { doppler, .. } => {
-                RowTable::single(DopplerTable::new(range, |d| matrix(*doppler, d)))
+                RowTable::single(DopplerTable::new(range, |d| response.matrix(*doppler, d)))
             }
-            Incidence::Near => RowTable::by_lamp(rapidity, range, matrix),
-            Incidence::Ambient { .. } => bath_table(&Bath::new(rapidity), range, matrix),
+            Incidence::Near => RowTable::by_lamp(rapidity, range, |lamp, d| coarse.matrix(lamp, d)),
+            Incidence::Ambient { .. } => {
+                bath_table(&Bath::new(rapidity), range, |lamp, d| coarse.matrix(lamp, d))
+            }
         };
         let table = Arc::new(table);
         self.reflected.push((key, table.clone()));
@@ -200,11 +202,12 @@ fn bath_table(
         return RowTable::single(DopplerTable::new(range, around));
     }
     let rings = bath.rings(64);
+    let model = RowTable::model(rings[0].doppler.ln(), range, &matrix);
     let shifted: Vec<DopplerTable> =
-        rings.iter().map(|ring| DopplerTable::new(range, |d| matrix(ring.doppler, d))).collect();
+        rings.iter().map(|ring| model.alike(|d| matrix(ring.doppler, d))).collect();
     let row = |cos_psi: f64| {
         let shares: Vec<f64> = rings.iter().map(|ring| ring.share(cos_psi.clamp(-1.0, 1.0))).collect();
-        DopplerTable::new(range, |d| {
+        model.alike(|d| {
             let mut sum = [[0.0; 3]; 3];
             for (table, share) in shifted.iter().zip(&shares) {
                 for (k, v) in table.at(d.ln()).into_iter().enumerate() {
@@ -353,7 +356,7 @@ impl SeenShading<'_> {
     ) -> [f32; 3] {
         let coloring = self.shading.coloring;
         if coloring == Coloring::Doppler {
-            return false_color(doppler);
+            return finite(false_color(doppler));
         }
         let material = &self.shading.bodies[body].materials[material];
         let colors = colors();

@@ -126,6 +126,17 @@ impl DopplerTable {
         Self { start: -(grid.side as f64) * grid.step, inverse_step: 1.0 / grid.step, nodes, ends, error }
     }
 
+    /// A table with nodes at the same places, whose error is taken for the same.
+    pub fn alike(&self, exact: impl Fn(f64) -> Matrix + Sync) -> Self {
+        let side = (self.nodes.len() - 3) / 2;
+        if self.inverse_step == 0.0 {
+            return Self::new(0.0, exact);
+        }
+        let grid = Grid { step: 1.0 / self.inverse_step, side };
+        let nodes: Vec<[f64; 9]> = grid.places().map(|x| flat(&exact(x.exp()))).collect();
+        Self::of_nodes(grid, &nodes, self.error)
+    }
+
     /// The nine numbers at ln D.
     #[inline]
     pub fn at(&self, ln_doppler: f64) -> [f32; 9] {
@@ -184,6 +195,9 @@ pub struct RowTable {
 /// The most nodes on either side of D = 1 in tables of which there are many.
 const MOST_IN_ROWS: usize = 512;
 
+/// Light shifted farther to the red than this, by ln D, does not count.
+const DARKEST: f64 = -2.5;
+
 /// Rows per unit of ln D of the lamp, and the most there are.
 const ROWS: f64 = 32.0;
 const MOST_ROWS: f64 = 160.0;
@@ -197,13 +211,21 @@ impl RowTable {
     /// For light that reaches surfaces with |ln D| up to `lamp_range`, and is seen with |ln D| up to `range`; `exact` by
     /// the two Doppler factors.
     pub fn by_lamp(lamp_range: f64, range: f64, exact: impl Fn(f64, f64) -> Matrix + Sync) -> Self {
-        let row = |lamp: f64| DopplerTable::with_most(range, MOST_IN_ROWS, |d| exact(lamp.exp(), d));
         let lamp_range = lamp_range.min(FARTHEST);
         if lamp_range < 1e-12 {
-            return Self::single(row(0.0));
+            return Self::single(DopplerTable::new(range, |d| exact(1.0, d)));
         }
+        let model = Self::model(-lamp_range, range, &exact);
+        let row = |lamp: f64| model.alike(|d| exact(lamp.exp(), d));
         let count = (2.0 * lamp_range * ROWS).ceil().clamp(4.0, MOST_ROWS) as usize;
         Self::evenly([-lamp_range, lamp_range], count, row)
+    }
+
+    /// A table whose nodes serve for many, of light that comes with no less than the given ln D: the reddest needs the
+    /// most, as long as there is any.
+    pub fn model(reddest: f64, range: f64, exact: impl Fn(f64, f64) -> Matrix + Sync) -> DopplerTable {
+        let lamp = reddest.max(DARKEST).exp();
+        DopplerTable::with_most(range, MOST_IN_ROWS, |d| exact(lamp, d))
     }
 
     /// `count` rows, at least two, from the first place to the last; `row` makes one.
