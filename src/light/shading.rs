@@ -423,7 +423,7 @@ impl SeenShading<'_> {
             Coloring::Spectral => {
                 let Some(table) = material.reflected.get(index) else { return [0.0; 3] };
                 let own = arriving.factors.map(|v| v as f32);
-                let seen = table.color(arriving.row, doppler.ln(), own);
+                let seen = table.color(arriving.row, ln(doppler), own);
                 seen.map(|v| (f64::from(v) * arriving.spectral) as f32)
             }
             coloring => {
@@ -494,10 +494,16 @@ impl MaterialShading {
     #[inline]
     fn shines(&self, coloring: Coloring, doppler: f64, own: [f32; 3]) -> [f32; 3] {
         match (&self.own, coloring) {
-            (Some(table), Coloring::Spectral) => table.color(doppler.ln(), own),
+            (Some(table), Coloring::Spectral) => table.color(ln(doppler), own),
             _ => beamed(coloring, doppler, times(&self.unshifted, own)),
         }
     }
+}
+
+/// Of a Doppler factor, as exact as tables need: a few 10⁻⁷.
+#[inline]
+fn ln(doppler: f64) -> f64 {
+    f64::from((doppler as f32).ln())
 }
 
 /// Beaming without colour: I_ν/ν³ is invariant (Nollert et al. 2000, Eq. 5), so a spectrum flat in ν is D³ times as

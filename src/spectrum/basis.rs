@@ -24,12 +24,10 @@ impl std::fmt::Display for Beyond {
     }
 }
 
-const STEP_NM: f64 = 5.0;
-
 /// Beyond the visible colours fade to grey over so many nanometres.
 const FADE_NM: f64 = 40.0;
 
-/// By assets/color/make_basis.py, from 360 nm by 5 nm.
+/// By assets/color/make_basis.py, from 360 to 830 nm by 1 nm.
 static REFLECTANCES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
     include_str!("../../assets/color/rgb_basis.csv")
         .lines()
@@ -50,7 +48,7 @@ pub fn reflectances(nm: f64, beyond: Beyond) -> [f64; 3] {
     let table = &*REFLECTANCES;
     let [first, last] = VISIBLE_NM;
     if (first..=last).contains(&nm) {
-        let place = (nm - first) / STEP_NM;
+        let place = nm - first;
         let low = (place as usize).min(table.len() - 2);
         let t = place - low as f64;
         return std::array::from_fn(|i| table[low][i] + t * (table[low + 1][i] - table[low][i]));

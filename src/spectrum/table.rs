@@ -12,7 +12,7 @@ pub struct DopplerTable {
     /// ln D of the second node; the first and the last are there for the cubic.
     start: f64,
     inverse_step: f64,
-    nodes: Vec<[f32; 9]>,
+    nodes: Vec<Node>,
     /// Powers of D with which it goes on below and above.
     ends: [f64; 2],
     error: f64,
@@ -57,6 +57,13 @@ fn flat(matrix: &Matrix) -> [f64; 9] {
     [r[0], r[1], r[2], g[0], g[1], g[2], b[0], b[1], b[2]]
 }
 
+/// Columns, with room for four numbers each.
+type Node = [[f32; 4]; 3];
+
+fn node(values: &[f64; 9]) -> Node {
+    std::array::from_fn(|i| std::array::from_fn(|k| if k < 3 { values[3 * i + k] as f32 } else { 0.0 }))
+}
+
 fn greatest(values: &[f64; 9]) -> f64 {
     values.iter().fold(0.0, |a, v| a.max(v.abs()))
 }
@@ -74,7 +81,7 @@ impl DopplerTable {
     fn with_most(range: f64, most_nodes: usize, exact: impl Fn(f64) -> Matrix + Sync) -> Self {
         let exact = |x: f64| flat(&exact(x.exp()));
         if range.is_nan() || range < 1e-15 {
-            let node = exact(0.0).map(|v| v as f32);
+            let node = node(&exact(0.0));
             return Self { start: 0.0, inverse_step: 0.0, nodes: vec![node; 4], ends: [0.0; 2], error: 0.0 };
         }
         let range = range.min(FARTHEST);
@@ -122,7 +129,7 @@ impl DopplerTable {
         };
         let last = nodes.len() - 1;
         let ends = [power(0, 1), power(last, last - 1)];
-        let nodes = nodes.iter().map(|n| n.map(|v| v as f32)).collect();
+        let nodes = nodes.iter().map(node).collect();
         Self { start: -(grid.side as f64) * grid.step, inverse_step: 1.0 / grid.step, nodes, ends, error }
     }
 
@@ -137,18 +144,30 @@ impl DopplerTable {
         Self::of_nodes(grid, &nodes, self.error)
     }
 
-    /// The nine numbers at ln D.
-    #[inline]
+    /// The nine numbers at ln D: columns for red, green and blue.
     pub fn at(&self, ln_doppler: f64) -> [f32; 9] {
+        let [r, g, b] =
+            [0, 1, 2].map(|i| self.color(ln_doppler, std::array::from_fn(|k| f32::from(u8::from(k == i)))));
+        [r[0], r[1], r[2], g[0], g[1], g[2], b[0], b[1], b[2]]
+    }
+
+    /// The colour seen at ln D of a surface of the colour `own`.
+    #[inline]
+    pub fn color(&self, ln_doppler: f64, own: [f32; 3]) -> [f32; 3] {
         let last = (self.nodes.len() - 3) as f64;
         let place = (ln_doppler - self.start) * self.inverse_step;
         let within = place.max(0.0).min(last);
         let low = (within as usize).min(self.nodes.len() - 4);
         let w = weights(within - low as f64);
-        let four = &self.nodes[low..low + 4];
-        let mut out: [f32; 9] = std::array::from_fn(|k| {
-            w[0] * four[0][k] + w[1] * four[1][k] + w[2] * four[2][k] + w[3] * four[3][k]
-        });
+        // Four at a time.
+        let mut sum = [0.0; 4];
+        for (node, w) in self.nodes[low..low + 4].iter().zip(w) {
+            for (column, own) in node.iter().zip(own) {
+                let factor = w * own;
+                sum = std::array::from_fn(|k| sum[k] + factor * column[k]);
+            }
+        }
+        let mut out = [sum[0], sum[1], sum[2]];
         if place != within {
             self.go_on(&mut out, (place - within) / self.inverse_step);
         }
@@ -156,20 +175,13 @@ impl DopplerTable {
     }
 
     #[cold]
-    fn go_on(&self, values: &mut [f32; 9], beyond: f64) {
+    fn go_on(&self, values: &mut [f32; 3], beyond: f64) {
         let power = self.ends[usize::from(beyond > 0.0)];
         if beyond.is_finite() {
             // Spectra that fall steeply on either side are dark beyond.
             let factor = (power * beyond).min(80.0).exp() as f32;
             *values = values.map(|v| v * factor);
         }
-    }
-
-    /// The colour seen at ln D of a surface of the colour `own`.
-    #[inline]
-    pub fn color(&self, ln_doppler: f64, own: [f32; 3]) -> [f32; 3] {
-        let m = self.at(ln_doppler);
-        [0, 1, 2].map(|i| m[i] * own[0] + m[3 + i] * own[1] + m[6 + i] * own[2])
     }
 
     /// How many nodes there are.
