@@ -21,7 +21,7 @@ impl Builtin {
     }
 }
 
-const SCENES: [Builtin; 7] = [
+const SCENES: [Builtin; 9] = [
     Builtin {
         name: "cube",
         about: "a cube passing at 0.9c, seen as it appears abreast: it seems to turn (Fig. 2)",
@@ -43,6 +43,11 @@ const SCENES: [Builtin; 7] = [
         toml: include_str!("../../assets/lattice.toml"),
     },
     Builtin {
+        name: "hot",
+        about: "the lattice, glowing at 4500 K: blue-white ahead, dull red behind (Eq. 3, 5)",
+        toml: include_str!("../../assets/hot.toml"),
+    },
+    Builtin {
         name: "sphere",
         about: "chequered spheres at rest, 0.5c, 0.9c and 0.99c: all outlines are circles, all are turned",
         toml: include_str!("../../assets/sphere.toml"),
@@ -51,6 +56,11 @@ const SCENES: [Builtin; 7] = [
         name: "street",
         about: "a street with trams and cars at 0, 0.5c, 0.8c and 0.9c, in both directions",
         toml: include_str!("../../assets/street.toml"),
+    },
+    Builtin {
+        name: "sunlit",
+        about: "balls at rest, 0.5c, 0.9c and 0.99c in the light of one sun, aberrated: ever thinner crescents",
+        toml: include_str!("../../assets/sunlit.toml"),
     },
     Builtin {
         name: "train",

@@ -189,7 +189,12 @@ impl Spectrum {
                     Shape::Line { .. } => super::response::of_line(&self.shape, 1.0, 1.0, |_| 1.0).y,
                     shape => matching().map(|(nm, xyz)| xyz.y * shape.at(nm, self.beyond)).sum(),
                 };
-                if unit > 1e-200 && unit.is_finite() {
+                // Of a black body at room temperature a part in 10¹⁹ is seen.
+                let whole = match &self.shape {
+                    Shape::White => 0.0,
+                    shape => shape.integral(self.beyond).unwrap_or(0.0),
+                };
+                if unit > 1e-12 * whole && unit > 0.0 && unit.is_finite() {
                     Ok(luminance / unit)
                 } else {
                     Err(SpectrumError::NotSeen)

@@ -74,11 +74,11 @@ impl DopplerTable {
 
     /// A table of `exact` for |ln D| up to `range`.
     pub fn new(range: f64, exact: impl Fn(f64) -> Matrix + Sync) -> Self {
-        Self::with_most(range, MOST, exact)
+        Self::within(range, MOST, Self::ERROR, exact)
     }
 
-    /// As [`new`](Self::new), with at most so many nodes on either side of D = 1.
-    fn with_most(range: f64, most_nodes: usize, exact: impl Fn(f64) -> Matrix + Sync) -> Self {
+    /// As [`new`](Self::new), with at most so many nodes on either side of D = 1, and an error of its own.
+    fn within(range: f64, most_nodes: usize, accepted: f64, exact: impl Fn(f64) -> Matrix + Sync) -> Self {
         let exact = |x: f64| flat(&exact(x.exp()));
         if range.is_nan() || range < 1e-15 {
             let node = node(&exact(0.0));
@@ -103,7 +103,7 @@ impl DopplerTable {
                 if off == 0.0 { 0.0 } else { off / greatest(exact).max(VANISHING * near) }
             };
             let error = middles.iter().enumerate().map(off).fold(0.0, f64::max);
-            if error <= Self::ERROR || 2 * grid.side > most_nodes {
+            if error <= accepted || 2 * grid.side > most_nodes {
                 return Self::of_nodes(grid, &nodes, error);
             }
             // All there were, those between them, and one beyond each end.
@@ -215,6 +215,9 @@ const ROWS: f64 = 32.0;
 const MOST_ROWS: f64 = 160.0;
 
 impl RowTable {
+    /// The error between nodes that is accepted in tables of which there are many.
+    pub const ERROR: f64 = 1e-3;
+
     /// One row, whatever the second quantity.
     pub fn single(row: DopplerTable) -> Self {
         Self { start: 0.0, inverse_step: 0.0, rows: vec![row] }
@@ -237,7 +240,7 @@ impl RowTable {
     /// most, as long as there is any.
     pub fn model(reddest: f64, range: f64, exact: impl Fn(f64, f64) -> Matrix + Sync) -> DopplerTable {
         let lamp = reddest.max(DARKEST).exp();
-        DopplerTable::with_most(range, MOST_IN_ROWS, |d| exact(lamp, d))
+        DopplerTable::within(range, MOST_IN_ROWS, RowTable::ERROR, |d| exact(lamp, d))
     }
 
     /// `count` rows, at least two, from the first place to the last; `row` makes one.

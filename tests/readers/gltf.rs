@@ -30,13 +30,16 @@ fn buffer() -> Vec<u8> {
 fn whole(uri: Option<&str>) -> Value {
     let mut out = json!({
         "asset": {"version": "2.0", "generator": "test"},
-        "extensionsUsed": ["KHR_materials_unlit"],
+        "extensionsUsed": ["KHR_materials_unlit", "KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [
+            {"type": "spot", "intensity": 9, "color": [1, 0.5, 0], "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.5}},
+            {"type": "directional"}, {"type": "point", "range": 3}]}},
         "scene": 0,
         "scenes": [{"nodes": [0, 2]}, {"nodes": [3]}],
         "nodes": [
             {"children": [1], "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1]},
             {"mesh": 0, "rotation": [0, 0, 0, 1], "translation": [1, 2, 3], "scale": [1, 2, 1], "skin": 0, "weights": [0.5]},
-            {"mesh": 1, "camera": 0, "name": "two"},
+            {"mesh": 1, "camera": 0, "name": "two", "extensions": {"KHR_lights_punctual": {"light": 0}}},
             {"mesh": 0}
         ],
         "meshes": [

@@ -20,6 +20,7 @@ use terrell::render::{Options, render};
 use terrell::scene::{
     Imported, Lens, Projection, Scene, View, authored, framed, import, import_obj, parse_scene,
 };
+use terrell::spectrum::{Response, Shape, Spectrum, Tabulated};
 
 /// Cases of a test, unless PROPTEST_CASES says otherwise.
 fn cases(usual: u32) -> ProptestConfig {
@@ -178,6 +179,7 @@ fn draw(scene: &Scene) {
     let options = Options { tolerance: 1.0, most_pieces: 10_000, ..Default::default() };
     if let Ok((film, _)) = render(scene, &camera, &options, |_| ()) {
         assert!(film.distance.iter().chain(&film.doppler).all(|v| *v >= 0.0));
+        assert!(film.color.iter().flatten().all(|v| v.is_finite()));
     }
 }
 
@@ -208,6 +210,24 @@ proptest! {
             (String::from_utf8_lossy(&damaged(OBJ.into(), &damages)).into_owned(), MTL.to_owned())
         };
         judge(obj.len() + mtl.len(), || import_obj(&obj, &mtl, "a.obj"));
+    }
+
+    /// A table of a spectrum: an error that says something, or one that can be shifted.
+    #[test]
+    fn damaged_spectrum(damages in damage()) {
+        let csv = "nm,value\n# a lamp\n400,0\n450.5,1e-3\n500,0.7\n560,1\n700,0.02\n";
+        let text = String::from_utf8_lossy(&damaged(csv.into(), &damages)).into_owned();
+        match Tabulated::parse(&text, "lamp.csv") {
+            Err(e) => assert!(!e.to_string().is_empty()),
+            Ok(table) => {
+                let spectrum = Spectrum::of(Shape::Tabulated(std::sync::Arc::new(table)));
+                if let Ok(response) = Response::of_own(&spectrum) {
+                    for doppler in [1e-3, 0.5, 1.0, 3.0, 1e4] {
+                        assert!(response.matrix(1.0, doppler).iter().flatten().all(|v| v.is_finite()));
+                    }
+                }
+            }
+        }
     }
 
     #[test]
