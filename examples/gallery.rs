@@ -9,22 +9,23 @@ use std::process::{Command, exit};
 
 /// File in docs/images/ and the words after `terrell`; SAMPLE is a file of the example `textured_sample`.
 const PICTURES: &[(&str, &[&str])] = &[
-    ("cube_rest.png", &["render", "cube", "--beta", "0", SIZE, SMOOTH]),
-    ("cube.png", &["render", "cube", SIZE, SMOOTH]),
-    ("gate_rest.png", &["render", "gate", "--beta", "0", SIZE, SMOOTH]),
-    ("gate.png", &["render", "gate", SIZE, SMOOTH]),
-    ("lattice_rest.png", &["render", "lattice", "--beta", "0", SIZE, SMOOTH]),
-    ("lattice.png", &["render", "lattice", SIZE, SMOOTH]),
-    ("lattice_doppler.png", &["render", "lattice", "--color", "doppler", SIZE, SMOOTH]),
-    ("gate_back.png", &["render", "gate_back", SIZE, SMOOTH]),
-    ("sphere.png", &["render", "sphere", SIZE, SMOOTH]),
-    ("street.png", &["render", "street", SIZE, SMOOTH]),
-    ("train.png", &["render", "train", SIZE, SMOOTH]),
+    // Shapes: without shift and beaming.
+    ("cube_rest.png", &["render", "cube", "--beta=0", SHAPE, SIZE, SMOOTH]),
+    ("cube_shape.png", &["render", "cube", SHAPE, SIZE, SMOOTH]),
+    ("gate_rest.png", &["render", "gate", "--beta=0", SHAPE, SIZE, SMOOTH]),
+    ("gate.png", &["render", "gate", SHAPE, SIZE, SMOOTH]),
+    ("gate_back.png", &["render", "gate_back", SHAPE, SIZE, SMOOTH]),
+    ("lattice_rest.png", &["render", "lattice", "--beta=0", SHAPE, SIZE, SMOOTH]),
+    ("lattice.png", &["render", "lattice", SHAPE, SIZE, SMOOTH]),
+    ("sphere.png", &["render", "sphere", SHAPE, SIZE, SMOOTH]),
+    ("street.png", &["render", "street", SHAPE, SIZE, SMOOTH]),
+    ("train.png", &["render", "train", SHAPE, SIZE, SMOOTH]),
     (
         "lattice_drawn.png",
         &[
             "render",
             "lattice",
+            SHAPE,
             "--size=960x540",
             "--edges",
             "--axes",
@@ -33,19 +34,47 @@ const PICTURES: &[(&str, &[&str])] = &[
             "β = {beta}, γ = {gamma}",
         ],
     ),
-    ("gate_painted.png", &["render", "gate", "--size=960x540", "--raster=skia", "--edges=all"]),
-    ("sample_rest.png", &["render", "SAMPLE", SIZE, SMOOTH, "--fov=60"]),
-    ("sample.png", &["render", "SAMPLE", "--beta=0.9", SIZE, SMOOTH, "--fov=60"]),
+    ("gate_painted.png", &["render", "gate", SHAPE, "--size=960x540", "--raster=skia", "--edges=all"]),
+    ("sample_rest.png", &["render", "SAMPLE", SHAPE, SIZE, SMOOTH, "--fov=60"]),
+    ("sample.png", &["render", "SAMPLE", "--beta=0.9", SHAPE, SIZE, SMOOTH, "--fov=60"]),
     (
         "cube.gif",
-        &["animate", "cube", "--beside-standard", "--size=320x180", "--frames=60", "--fps=20", "--samples=4"],
+        &["animate", "cube", "--beside-standard", SHAPE, SMALL, "--frames=60", "--fps=20", "--samples=4"],
     ),
     (
         "gate.gif",
-        &["animate", "gate", "--beside-standard", "--size=320x180", "--frames=60", "--fps=20", "--samples=4"],
+        &["animate", "gate", "--beside-standard", SHAPE, SMALL, "--frames=60", "--fps=20", "--samples=4"],
     ),
+    // Light.
+    ("cube.png", &["render", "cube", SIZE, SMOOTH]),
+    ("hot_rest.png", &["render", "hot", "--beta=0", SIZE, SMOOTH, "--legend"]),
+    ("hot.png", &["render", "hot", SIZE, SMOOTH, "--legend"]),
+    ("hot_log.png", &["render", "hot", SIZE, SMOOTH, "--tone=log", "--legend"]),
+    ("sunlit_geometry.png", &["render", "sunlit", SIZE, SMOOTH, SHAPE, "--legend"]),
+    ("sunlit.png", &["render", "sunlit", SIZE, SMOOTH, "--tone=log", "--legend"]),
+    ("lattice_90_geometry.png", &["render", "lattice", SHAPE, SMALL, SMOOTH]),
+    ("lattice_90_doppler.png", &["render", "lattice", "--color=doppler", "--legend", SMALL, SMOOTH]),
+    ("lattice_90_flat.png", &["render", "lattice", "--color=flat", "--legend", SMALL, SMOOTH]),
+    ("lattice_90_spectral.png", &["render", "lattice", "--legend", SMALL, SMOOTH]),
+    ("lattice_99_geometry.png", &["render", "lattice", "--beta=0.99", SHAPE, SMALL, SMOOTH]),
+    (
+        "lattice_99_doppler.png",
+        &["render", "lattice", "--beta=0.99", "--color=doppler", "--legend", SMALL, SMOOTH],
+    ),
+    ("lattice_99_flat.png", &["render", "lattice", "--beta=0.99", "--color=flat", "--legend", SMALL, SMOOTH]),
+    ("lattice_99_spectral.png", &["render", "lattice", "--beta=0.99", "--legend", SMALL, SMOOTH]),
+    ("gate_90_geometry.png", &["render", "gate", "--beta=0.9", SHAPE, SMALL, SMOOTH]),
+    ("gate_90_doppler.png", &["render", "gate", "--beta=0.9", "--color=doppler", "--legend", SMALL, SMOOTH]),
+    ("gate_90_flat.png", &["render", "gate", "--beta=0.9", "--color=flat", "--legend", SMALL, SMOOTH]),
+    ("gate_90_spectral.png", &["render", "gate", "--beta=0.9", "--legend", SMALL, SMOOTH]),
+    ("gate_99_geometry.png", &["render", "gate", SHAPE, SMALL, SMOOTH]),
+    ("gate_99_doppler.png", &["render", "gate", "--color=doppler", "--legend", SMALL, SMOOTH]),
+    ("gate_99_flat.png", &["render", "gate", "--color=flat", "--legend", SMALL, SMOOTH]),
+    ("gate_99_spectral.png", &["render", "gate", "--legend", SMALL, SMOOTH]),
 ];
 
+const SHAPE: &str = "--color=geometry";
+const SMALL: &str = "--size=320x180";
 const SIZE: &str = "--size=640x360";
 const SMOOTH: &str = "--samples=16";
 

@@ -28,6 +28,8 @@
 //! | Eq. 1 | [`relativity::ApparentMap`] | apparent position, x = γ(x′ − βr′), and its inverse |
 //! | Eq. 2 | [`apparent::Rod`], [`apparent::Arc`] | straight rods are seen as hyperbolas |
 //! | Eq. 3, 4 | [`relativity::Sight::doppler`], [`relativity::ApparentMap::doppler_towards`] | Doppler factor |
+//! | Eq. 5 | [`spectrum::Response`], [`light::Shading`] | I_ν/ν³ is invariant: spectra and colours under a shift |
+//! | section 2.2.3 | [`light::SeenShading::radiance`] | lights, aberrated, in each body's rest frame |
 //! | Fig. 7 | [`geodesic::Spacetime`] | what hands straight segments to whoever looks |
 //!
 //! # Conventions
@@ -38,13 +40,13 @@
 //! * X_world = L(celerity) · X_rest + origin for a body; see [`relativity::Motion`].
 //! * D = ν_observed/ν_emitted: above 1 approaching and blue. θ always says its frame.
 //! * Spacetime arithmetic is f64, with 32 digits for what is formed once a body; the film is f32.
-//! * Colours are linear sRGB (Rec. 709 primaries, D65 white).
+//! * Colours are linear sRGB (Rec. 709 primaries, D65 white). Light is radiance in units of the film's white: luminance 1.
 //!
 //! # Reading order
 //!
 //! [`geodesic`] (events, Lorentz maps, observers) → [`relativity`] (the map) → [`scene`] (what is there) →
-//! [`apparent`] (what it looks like) → [`raster`] → [`film`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in
-//! turn. [`mod@transform`] instead makes a [`export::Model`] for other programs of what there is and how it looks.
+//! [`apparent`] (what it looks like), [`spectrum`] and [`light`] (what it shines with) → [`raster`] → [`film`] →
+//! [`exposure`], [`tone`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in turn. [`mod@transform`] instead makes a [`export::Model`] for other programs of what there is and how it looks.
 
 pub mod apparent;
 pub mod color;

@@ -82,14 +82,23 @@ impl Default for Development {
 
 impl Development {
     /// What is shown of linear light, linear too, from 0 to 1 (NaN is 0 when it is encoded).
-    #[inline]
     pub fn shown(&self, light: [f32; 3]) -> [f32; 3] {
-        let factor = self.ev.exp2();
-        let exposed = within_gamut(light.map(|v| v * factor));
-        match self.tone {
-            Tone::Linear => exposed,
-            Tone::Filmic => exposed.map(filmic),
-            Tone::Log => logarithmic(exposed),
+        self.curve()(light)
+    }
+
+    /// [`shown`](Self::shown) for many colours.
+    pub fn curve(&self) -> impl Fn([f32; 3]) -> [f32; 3] + Sync + use<> {
+        let (factor, tone) = (self.ev.exp2(), self.tone);
+        move |light| {
+            if light == [0.0; 3] {
+                return light;
+            }
+            let exposed = within_gamut(light.map(|v| v * factor));
+            match tone {
+                Tone::Linear => exposed,
+                Tone::Filmic => exposed.map(filmic),
+                Tone::Log => logarithmic(exposed),
+            }
         }
     }
 }

@@ -365,7 +365,7 @@ fn pov_ray_sees_what_we_see() {
         Command::cargo_bin("terrell")
             .unwrap()
             .current_dir(at)
-            .args(["render", scene, "--size", "320x240", "-o", "ours.png"])
+            .args(["render", scene, "--color", "geometry", "--size", "320x240", "-o", "ours.png"])
             .assert()
             .success();
         let flags = ["a.pov", "+W320", "+H240", "-A", "-D", "+FN8", "+Otheirs.png"];

@@ -7,10 +7,10 @@ use std::io::Write;
 /// The film as 8-bit sRGB, three bytes a pixel: developed, clipped to 0…1 and encoded (IEC 61966-2-1).
 pub fn pixels_srgb(film: &Film, development: &Development) -> Vec<u8> {
     let mut pixels = vec![0; 3 * film.color.len()];
-    let block = 3 * 4096;
+    let (block, shown) = (3 * 4096, development.curve());
     pixels.par_chunks_mut(block).zip(film.color.par_chunks(block / 3)).for_each(|(pixels, colors)| {
         for (pixel, color) in pixels.chunks_exact_mut(3).zip(colors) {
-            pixel.copy_from_slice(&development.shown(*color).map(encoded));
+            pixel.copy_from_slice(&shown(*color).map(encoded));
         }
     });
     pixels
