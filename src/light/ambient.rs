@@ -1,5 +1,6 @@
 //! A body in motion through light that is the same from everywhere.
 
+use crate::spectrum::cubic;
 use std::f64::consts::{PI, TAU};
 
 /// Light that is isotropic in one frame, as a surface of a body meets it that moves in that frame.
@@ -102,9 +103,7 @@ impl Irradiance {
     pub fn at(&self, cos_psi: f64) -> [f64; 2] {
         let place = (0.5 * (cos_psi + 1.0) * STEPS as f64).max(0.0).min(STEPS as f64);
         let low = (place as usize).clamp(1, STEPS - 2);
-        let t = place - low as f64;
-        let (a, b, c) = (t + 1.0, t - 1.0, t - 2.0);
-        let weights = [-t * b * c / 6.0, a * b * c / 2.0, -a * t * c / 2.0, a * t * b / 6.0];
+        let weights = cubic(place - low as f64);
         [0, 1].map(|k| (0..4).map(|j| weights[j] * self.0[low - 1 + j][k]).sum())
     }
 }

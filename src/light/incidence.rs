@@ -1,7 +1,7 @@
 //! Lights in the rest frame of one body.
 
+use super::Point;
 use super::ambient::{Bath, Irradiance};
-use super::shading::Point;
 use crate::relativity::Motion;
 use crate::scene::{Light, LightKind};
 use glam::DVec3;

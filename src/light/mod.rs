@@ -7,6 +7,12 @@
 mod ambient;
 mod gloss;
 mod incidence;
+mod point;
+mod seen;
 mod shading;
+mod tables;
 
-pub use shading::{DopplerAt, Point, SeenShading, Shading, ShadingError, TableInfo, has_near_lights};
+pub use point::Point;
+pub use seen::SeenShading;
+pub use shading::{DopplerAt, Shading, ShadingError, has_near_lights};
+pub use tables::TableInfo;

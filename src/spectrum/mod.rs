@@ -7,6 +7,7 @@
 
 mod basis;
 mod constants;
+mod cubic;
 mod observer;
 mod response;
 mod shape;
@@ -14,6 +15,7 @@ mod table;
 mod tabulated;
 
 pub use basis::{Beyond, reflectances};
+pub(crate) use cubic::cubic;
 pub use observer::{XYZ_FROM_RGB, luminance, rgb_from_xyz, xyz_of_black_body};
 pub use response::{Matrix, Response};
 pub use shape::{Shape, Spectrum, SpectrumError, Strength};

@@ -1,4 +1,5 @@
 use super::constants::{EFFICACY, PRIMARIES, WHITE};
+use super::cubic::cubic;
 use super::shape::planck;
 use glam::{DMat3, DVec3};
 use std::sync::LazyLock;
@@ -39,9 +40,7 @@ pub(super) fn matching_at(nm: f64) -> DVec3 {
         return edge * (-0.1 * away).exp();
     }
     let low = (place as usize).clamp(1, LINES - 3);
-    let t = place - low as f64;
-    let (a, b, c) = (t + 1.0, t - 1.0, t - 2.0);
-    let weights = [-t * b * c / 6.0, a * b * c / 2.0, -a * t * c / 2.0, a * t * b / 6.0];
+    let weights = cubic(place - low as f64);
     weights.iter().zip(&MATCHING[low - 1..low + 3]).map(|(w, xyz)| *xyz * *w).sum()
 }
 

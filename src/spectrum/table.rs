@@ -1,3 +1,4 @@
+use super::cubic::cubic;
 use super::response::Matrix;
 use rayon::prelude::*;
 
@@ -48,8 +49,7 @@ impl Grid {
 /// Weights of the four nodes around a place between the second and the third.
 #[inline]
 fn weights(t: f64) -> [f32; 4] {
-    let (a, b, c) = (t + 1.0, t - 1.0, t - 2.0);
-    [-t * b * c / 6.0, a * b * c / 2.0, -a * t * c / 2.0, a * t * b / 6.0].map(|w| w as f32)
+    cubic(t).map(|w| w as f32)
 }
 
 fn flat(matrix: &Matrix) -> [f64; 9] {
@@ -94,7 +94,7 @@ impl DopplerTable {
             let sizes: Vec<f64> = nodes.iter().map(greatest).collect();
             let octave = (std::f64::consts::LN_2 / grid.step) as usize;
             let off = |(i, exact): (usize, &[f64; 9])| {
-                let w = weights(0.5).map(f64::from);
+                let w = cubic(0.5);
                 let between = |k: usize| (0..4).map(|j| w[j] * nodes[i + j][k]).sum::<f64>();
                 let off = (0..9).map(|k| (between(k) - exact[k]).abs()).fold(0.0, f64::max);
                 let near = &sizes[i.saturating_sub(octave)..(i + octave).min(sizes.len())];

@@ -374,6 +374,13 @@ mod tests {
     fn what_cannot_be_is_refused_by_name() {
         for (json, part) in [
             (
+                r#""extensionsUsed": ["KHR_lights_punctual"],
+                "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "name": "bulb", "intensity": -2}]}},
+                "scenes": [{"nodes": [0]}], "materials": [{}],
+                "nodes": [{"mesh": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}]"#,
+                "light 'bulb': its intensity, -2,",
+            ),
+            (
                 r#""scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "name": "n", "extras": {"velocity": [2, 0, 0]}}],
                 "materials": [{}]"#,
                 "node n: extras: velocity",

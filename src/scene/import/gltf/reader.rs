@@ -350,6 +350,13 @@ impl<'a> Reader<'a> {
         let position = within.translation;
         let name = light.name().map_or_else(|| named(node), str::to_owned);
         self.room.take(named_size(&name))?;
+        let (strength, color) = (f64::from(light.intensity()), light.color());
+        let possible = |v: f64| (0.0..=1e12).contains(&v);
+        if !possible(strength) || !color.iter().all(|v| possible((*v).into())) {
+            return Err(format!(
+                "light '{name}': its intensity, {strength}, and its colour must lie between 0 and 1e12"
+            ));
+        }
         self.lights.push(Light {
             name,
             kind: match light.kind() {
@@ -359,10 +366,10 @@ impl<'a> Reader<'a> {
                     LightKind::Spot { position, direction, cone: [inner_cone_angle, outer_cone_angle] }
                 }
             },
-            color: light.color(),
+            color,
             spectrum: Spectrum::default(),
             // Lux and candela.
-            strength: light.intensity().into(),
+            strength,
             motion: place.motion,
         });
         Ok(())

@@ -1,0 +1,204 @@
+use super::ambient::Irradiance;
+use super::incidence::{Incidence, NearLight};
+use super::shading::{MaterialShading, SceneLight, times};
+use super::{DopplerAt, Point, Shading, gloss};
+use crate::color::{Coloring, false_color};
+use crate::scene::{Colors, EmissionLaw, Gloss};
+use crate::spectrum::luminance;
+
+/// A [`Shading`] as one observer sees it at one moment.
+#[derive(Clone, Debug)]
+pub struct SeenShading<'a> {
+    shading: &'a Shading,
+    /// By body and light.
+    near: Vec<Vec<Option<NearLight>>>,
+}
+
+impl<'a> SeenShading<'a> {
+    pub(super) fn new(shading: &'a Shading, near: Vec<Vec<Option<NearLight>>>) -> Self {
+        Self { shading, near }
+    }
+
+    /// Where the Doppler factor is to be worked out.
+    pub fn doppler_at(&self) -> DopplerAt {
+        self.shading.doppler_at
+    }
+
+    /// Linear sRGB radiance, in units of the film's white, of a point of a body that is seen with the Doppler factor
+    /// `doppler`: its material by number, its colours and its place, which are asked for only if they matter.
+    #[inline]
+    pub fn radiance(
+        &self,
+        body: usize,
+        material: usize,
+        doppler: f64,
+        colors: impl FnOnce() -> Colors,
+        point: impl FnOnce() -> Point,
+    ) -> [f32; 3] {
+        let coloring = self.shading.coloring;
+        if coloring == Coloring::Doppler {
+            return finite(false_color(doppler));
+        }
+        let material = &self.shading.bodies[body].materials[material];
+        let colors = colors();
+        if !material.lit && material.law == EmissionLaw::Isotropic {
+            return finite(material.shines(coloring, doppler, colors.sum()));
+        }
+        finite(self.at_point(body, material, doppler, colors, &point()))
+    }
+
+    fn at_point(
+        &self,
+        body: usize,
+        material: &MaterialShading,
+        doppler: f64,
+        colors: Colors,
+        point: &Point,
+    ) -> [f32; 3] {
+        let coloring = self.shading.coloring;
+        let shines = if material.lit { colors.emission } else { colors.sum() };
+        let mut sum = [0.0; 3];
+        if shines != [0.0; 3] {
+            let law = material.law.factor(point.normal.dot(point.to_eye()));
+            sum = material.shines(coloring, doppler, shines).map(|v| v * law as f32);
+        }
+        if material.lit {
+            for index in 0..self.shading.lights.len() {
+                let more = self.reflected(body, material, index, doppler, colors.base, point);
+                sum = [0, 1, 2].map(|i| sum[i] + more[i]);
+            }
+        }
+        sum
+    }
+
+    /// Light of one of the lights, reflected.
+    fn reflected(
+        &self,
+        body: usize,
+        material: &MaterialShading,
+        index: usize,
+        doppler: f64,
+        base: [f32; 3],
+        point: &Point,
+    ) -> [f32; 3] {
+        let SceneLight { light, color } = &self.shading.lights[index];
+        let lobe = |to_light| gloss::reflected(base, &material.gloss, point.normal, to_light, point.to_eye());
+        let arriving = match &self.shading.bodies[body].incidences[index] {
+            Incidence::Distant { to_light, doppler: lamp } => {
+                Some(Arriving::at(*lamp, light.strength, lobe(*to_light)))
+            }
+            Incidence::Near => self.near[body][index]
+                .as_ref()
+                .and_then(|near| near.at(light, point))
+                .map(|arrival| Arriving::at(arrival.doppler, arrival.irradiance, lobe(arrival.to_light))),
+            Incidence::Ambient { axis, irradiance } => Some(Arriving::around(
+                axis.dot(point.normal),
+                light.strength,
+                irradiance,
+                &material.gloss,
+                base,
+            )),
+        };
+        let Some(arriving) = arriving.filter(|a| a.factors != [0.0; 3]) else { return [0.0; 3] };
+        match self.shading.coloring {
+            Coloring::Spectral => {
+                let Some(table) = material.reflected.get(index) else { return [0.0; 3] };
+                let own = arriving.factors.map(|v| v as f32);
+                let seen = table.color(arriving.row, ln(doppler), own);
+                seen.map(|v| (f64::from(v) * arriving.spectral) as f32)
+            }
+            coloring => {
+                let own = [0, 1, 2].map(|i| (arriving.factors[i] * f64::from(color[i])) as f32);
+                let strength = match coloring {
+                    Coloring::Flat => arriving.flat,
+                    Coloring::Bolometric => arriving.bolometric,
+                    _ => arriving.unshifted,
+                };
+                let seen = beamed(coloring, doppler, own);
+                seen.map(|v| (f64::from(v) * strength) as f32)
+            }
+        }
+    }
+}
+
+/// Light that reaches a surface and is reflected: colour factors, and how strong it is by what is counted.
+struct Arriving {
+    factors: [f64; 3],
+    /// As if there were no shift.
+    unshifted: f64,
+    /// Frequency by frequency, of spectra flat in ν.
+    flat: f64,
+    /// Over all frequencies.
+    bolometric: f64,
+    /// What the table's radiance is to be multiplied by.
+    spectral: f64,
+    /// Place in the table.
+    row: f64,
+}
+
+impl Arriving {
+    /// From one direction: E′_ν = D E_ν. Radiance goes with D³, but from an angle smaller by D².
+    fn at(lamp: f64, irradiance: f64, factors: [f64; 3]) -> Self {
+        let square = lamp * lamp;
+        Self {
+            factors,
+            unshifted: irradiance,
+            flat: irradiance * lamp,
+            bolometric: irradiance * square,
+            spectral: irradiance / square,
+            row: lamp.ln(),
+        }
+    }
+
+    fn around(cos_psi: f64, radiance: f64, irradiance: &Irradiance, gloss: &Gloss, base: [f32; 3]) -> Self {
+        use std::f64::consts::PI;
+        let [flat, bolometric] = irradiance.at(cos_psi);
+        Self {
+            factors: gloss::albedo(base, gloss).map(|v| v / PI),
+            unshifted: radiance * PI,
+            flat: radiance * flat,
+            bolometric: radiance * bolometric,
+            spectral: radiance,
+            row: cos_psi,
+        }
+    }
+}
+
+impl MaterialShading {
+    /// What is seen of the surface's own light of the colour `own`.
+    #[inline]
+    fn shines(&self, coloring: Coloring, doppler: f64, own: [f32; 3]) -> [f32; 3] {
+        match (&self.own, coloring) {
+            (Some(table), Coloring::Spectral) => table.color(ln(doppler), own),
+            _ => beamed(coloring, doppler, times(&self.unshifted, own)),
+        }
+    }
+}
+
+/// Of a Doppler factor, as exact as tables need: a few 10⁻⁷.
+#[inline]
+fn ln(doppler: f64) -> f64 {
+    f64::from((doppler as f32).ln())
+}
+
+/// Beaming without colour: I_ν/ν³ is invariant (Nollert et al. 2000, Eq. 5), so a spectrum flat in ν is D³ times as
+/// bright, and all frequencies together D⁴.
+#[inline]
+fn beamed(coloring: Coloring, doppler: f64, unshifted: [f32; 3]) -> [f32; 3] {
+    match coloring {
+        Coloring::Flat => {
+            let cube = (doppler * doppler * doppler) as f32;
+            unshifted.map(|v| v * cube)
+        }
+        Coloring::Bolometric => [luminance(unshifted) * (doppler * doppler).powi(2) as f32; 3],
+        Coloring::Geometry | Coloring::Spectral | Coloring::Doppler => unshifted,
+    }
+}
+
+/// What can be averaged and written.
+#[inline]
+fn finite(color: [f32; 3]) -> [f32; 3] {
+    const MOST: f32 = 1e35;
+    // NaN becomes the least, and is taken out first.
+    color.map(|v| if v.is_nan() { 0.0 } else { v.clamp(-MOST, MOST) })
+}
