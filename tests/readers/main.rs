@@ -14,6 +14,7 @@ mod toml;
 use memory::peak;
 use proptest::prelude::*;
 use std::path::Path;
+use terrell::color::Coloring;
 use terrell::geodesic::{Celerity, Event, Tetrad};
 use terrell::relativity::{ApparentMap, Motion};
 use terrell::render::{Options, render};
@@ -167,16 +168,17 @@ fn judge<E: std::fmt::Display>(input: usize, read: impl FnOnce() -> Result<Impor
 fn look_at(imported: Imported) {
     imported.parts.iter().for_each(|part| part.mesh.check().unwrap());
     let view = View { size: [32, 24], ..View::default() };
-    draw(&authored("m", imported.clone(), None, view.clone()));
-    draw(&framed("m", imported, Celerity::from_beta(0.9 * glam::DVec3::X).unwrap(), view));
+    draw(&authored("m", imported.clone(), None, view.clone()), Coloring::Flat);
+    let fast = Celerity::from_beta(0.9 * glam::DVec3::X).unwrap();
+    draw(&framed("m", imported, fast, view), Coloring::Spectral);
 }
 
 /// An error or a picture, without what is no number.
-fn draw(scene: &Scene) {
+fn draw(scene: &Scene, coloring: Coloring) {
     let _ = scene.check_animations();
     let Ok(mut camera) = scene.camera() else { return };
     camera.lens = Lens::new(Projection::Pinhole, 60.0, 32, 24).unwrap();
-    let options = Options { tolerance: 1.0, most_pieces: 10_000, ..Default::default() };
+    let options = Options { tolerance: 1.0, most_pieces: 10_000, coloring, ..Default::default() };
     if let Ok((film, _)) = render(scene, &camera, &options, |_| ()) {
         assert!(film.distance.iter().chain(&film.doppler).all(|v| *v >= 0.0));
         assert!(film.color.iter().flatten().all(|v| v.is_finite()));
