@@ -10,7 +10,8 @@ pub enum Coloring {
     Spectral,
     /// Every spectrum taken for flat in ν, the paper's simplest: colours stay, brightness goes with D³.
     Flat,
-    /// Radiance over all wavelengths, grey: it goes with D⁴. That of a colour is its luminance.
+    /// Radiance over all wavelengths, grey: it goes with D⁴. Unshifted it is the strength of the spectrum, as that says it (by
+    /// radiance or by luminance), times the luminance of the colour before it.
     Bolometric,
     /// Without Doppler shift and beaming: surfaces' own colours (the paper's Figs. 2, 3); lights, if there are any, from
     /// where the surfaces meet them.

@@ -24,9 +24,11 @@ const METERED: usize = 9;
 const ACROSS: u32 = 200;
 
 impl Exposure {
-    /// Brightness that goes with the shift needs metering; other colours are as they are.
-    pub fn usual(coloring: Coloring) -> Self {
-        if coloring.is_beamed() { Self::Auto } else { Self::Fixed(0.0) }
+    /// Brightness that goes with the shift needs metering, and so does that of lights; surfaces' own colours are as they
+    /// are.
+    pub fn usual(coloring: Coloring, scene: &Scene) -> Self {
+        let lit = coloring == Coloring::Geometry && !scene.lights.is_empty();
+        if coloring.is_beamed() || lit { Self::Auto } else { Self::Fixed(0.0) }
     }
 
     /// For a picture that is there.

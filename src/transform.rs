@@ -3,7 +3,7 @@
 use crate::apparent::{Cutting, CuttingError, Moment, see_vertices};
 use crate::color::Coloring;
 use crate::export::{Eye, Frame, Model, Object, Surface};
-use crate::light::{Point, SeenShading, Shading, ShadingError};
+use crate::light::{Point, SeenShading, Shading, ShadingError, TableInfo};
 use crate::relativity::ApparentMap;
 use crate::scene::{Body, Camera, Material, Mesh, Paint, Projection, Scene, Surface as Shines};
 use crate::tone::{Development, Tone};
@@ -70,6 +70,8 @@ pub struct Report {
     pub doppler: Option<[f32; 2]>,
     /// Exposure of the colours.
     pub ev: f32,
+    /// The tables these come from.
+    pub tables: Vec<TableInfo>,
     /// Time for mapping and cutting.
     pub subdivision: Duration,
 }
@@ -110,7 +112,7 @@ pub fn transform(
     let diagonal = |body: &Body| body.mesh.bounds().map_or(0.0, |(low, high)| (high - low).length());
     let shading = Shading::new(scene, moments, options.coloring)?;
     let shadings: Vec<_> = moments.iter().map(|m| shading.seen_by(m)).collect();
-    let mut report = Report::default();
+    let mut report = Report { tables: shading.tables().to_vec(), ..Report::default() };
     let mut objects = Vec::with_capacity(scene.bodies.len());
     for (index, body) in scene.bodies.iter().enumerate() {
         let left = options.most_pieces - report.pieces;

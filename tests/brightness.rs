@@ -152,7 +152,7 @@ fn a_legend_is_drawn() {
         assert!((0..320 * 90).all(|i| !changed(i % 320, 90 + i / 320)), "at the top");
         // The scale of false colours: blue at its right, red at its left.
         let rows = (0..60).filter(|&y| {
-            let (blue, red) = (legend.get_pixel(280, y).0, legend.get_pixel(240, y).0);
+            let (blue, red) = (legend.get_pixel(76, y).0, legend.get_pixel(36, y).0);
             blue[2] > blue[0] + 60 && red[0] > red[2] + 60
         });
         assert_eq!(rows.count() > 3, lower, "{color}");

@@ -155,6 +155,7 @@ impl Cutting {
             *normal = glam::Vec3::from(*normal).normalize_or_zero().to_array();
         }
         Mesh {
+            clay: mesh.clay,
             x: coordinate(&mesh.x),
             y: coordinate(&mesh.y),
             z: coordinate(&mesh.z),

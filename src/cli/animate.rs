@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use terrell::picture::MovieFormat;
 use terrell::render::Options;
 use terrell::scene::{Animation, Camera, Pace, STANDARD_BETA, Scene, Speed};
-use terrell::tone::Development;
+use terrell::tone::{Development, Tone};
 
 /// A film of a scene
 ///
@@ -116,7 +116,7 @@ impl Animate {
         let mut shooting = Shooting {
             takes: &takes,
             options: &options,
-            each_metered: self.look.develop.exposure(options.coloring).1,
+            each_metered: self.look.develop.is_each(),
             size,
             bar: progress_bar(takes.iter().map(|t| t.animation.frames as usize).sum(), self.report.quiet),
             tally: Tally::default(),
@@ -162,8 +162,12 @@ impl Animate {
         let panel = |scene: Scene, cameras: Vec<Camera>| -> Result<Panel, Fault> {
             let overlay = self.drawing.overlay(&scene)?;
             let shading = options.shading(&scene, &cameras)?;
-            let (tone, (exposure, each)) =
-                (self.look.develop.tone(options.coloring), self.look.develop.exposure(options.coloring));
+            let mut scene = scene;
+            scene.notes.extend(summary::table_notes(&shading));
+            let (tone, (exposure, each)) = (
+                self.look.develop.tone(options.coloring),
+                self.look.develop.exposure(options.coloring, &scene),
+            );
             let development = match each {
                 // Every frame's own.
                 true => Development { ev: 0.0, tone },
@@ -248,15 +252,18 @@ impl Done<'_> {
         if all.is_zero() { 0.0 } else { encoding.as_secs_f64() / all.as_secs_f64() }
     }
 
-    fn colors_in_words(&self, panel: &Panel) -> String {
+    fn colors_in_words(&self) -> String {
+        let coloring = self.options.coloring;
+        let panels = || self.takes.iter().filter_map(|take| take.panels.last());
+        let tone = panels().next().map_or(Tone::Linear, |panel| panel.development.tone);
         if self.each_metered {
-            format!(
-                "{} colour, every frame at an EV of its own, {}",
-                self.options.coloring, panel.development.tone
-            )
-        } else {
-            summary::colors_in_words(self.options.coloring, &panel.development)
+            return format!("{coloring} colour, every frame at an EV of its own, {tone}");
         }
+        // Scenes one after the other have exposures of their own.
+        let words = panels().map(|panel| summary::colors_in_words(coloring, &panel.development));
+        let mut all: Vec<String> = words.collect();
+        all.dedup();
+        all.join(", then ")
     }
 
     /// The exposure, where there is one for all frames.
@@ -270,21 +277,31 @@ impl Done<'_> {
         let take = &self.takes[0];
         let panel = take.panels.last().expect("a take has a panel");
         let bodies = summary::bodies_in_words(&summary::gammas(&panel.scene, &panel.cameras[0]));
+        let took = match tally.drawn {
+            0 => String::new(),
+            drawn => format!(
+                ", {:.1} ms a frame ({:.0} % of the work for writing)",
+                1e3 * self.whole.as_secs_f64() / drawn as f64,
+                100.0 * self.encoder_share()
+            ),
+        };
         let mut line = format!(
-            "{}: {} of {}x{} {}, {} a second, flat spacetime, {bodies}: apparent shading on the CPU, {}, {:.1} ms a frame ({:.0} % of the work for writing)\n",
+            "{}: {} of {}x{} {}, {} a second, flat spacetime, {bodies}: apparent shading on the CPU, {}{}\n",
             self.output.display(),
             frames(tally.drawn),
             self.size[0],
             self.size[1],
             panel.cameras[0].lens.projection(),
             take.animation.fps,
-            self.colors_in_words(panel),
-            1e3 * self.whole.as_secs_f64() / tally.drawn.max(1) as f64,
-            100.0 * self.encoder_share(),
+            self.colors_in_words(),
+            took,
         );
         let mut note = |text: String| line.push_str(&format!("note: {text}\n"));
         if self.stopped {
             note(format!("stopped: {} of {} frames are there", tally.drawn + tally.kept, self.frames()));
+        }
+        if tally.dark > 0 {
+            note(format!("in {} {}", frames(tally.dark), summary::dark_note(self.options.coloring)));
         }
         if tally.kept > 0 {
             note(format!("{} there already", frames(tally.kept)));
@@ -319,7 +336,7 @@ impl Done<'_> {
                 "beside_standard": take.panels.len() > 1,
                 "exposure_ev": take.panels.iter().map(|p| self.ev(p)).collect::<Vec<_>>(),
                 "lights": summary::lights(&panel.scene),
-                "spectra": summary::spectra(&panel.shading),
+                "spectra": summary::spectra(panel.shading.tables()),
                 "notes": panel.scene.notes,
             })
         };

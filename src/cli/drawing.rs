@@ -23,7 +23,7 @@ pub struct DrawingFlags {
     /// picture. A panorama has none.
     #[arg(long)]
     scale_bar: bool,
-    /// Write exposure and tone curve, or draw the scale of false colours, at the upper right
+    /// Write exposure and tone curve, or draw the scale of false colours, at the upper left
     #[arg(long)]
     legend: bool,
     /// Write a line at the lower left; give it again for another line

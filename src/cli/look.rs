@@ -64,7 +64,7 @@ pub struct LookFlags {
 #[command(next_help_heading = "Brightness")]
 pub struct DevelopFlags {
     /// EV (light times two to its power), auto, rest, or for films each [default: auto where brightness goes with the
-    /// shift, else 0]
+    /// shift or there are lights, else 0]
     ///
     /// auto makes all of a picture but one in twenty of its points darker than white; of a film, of frames from all of
     /// it together, so that nothing flickers. each meters every frame of a film by itself. rest is auto for the same view
@@ -109,12 +109,17 @@ enum ToneFlag {
 
 impl DevelopFlags {
     /// How the exposure is chosen, and whether for every picture by itself.
-    pub fn exposure(&self, coloring: Coloring) -> (Exposure, bool) {
+    pub fn exposure(&self, coloring: Coloring, scene: &Scene) -> (Exposure, bool) {
         match self.exposure {
             Some(ExposureFlag::Chosen(exposure)) => (exposure, false),
             Some(ExposureFlag::Each) => (Exposure::Auto, true),
-            None => (Exposure::usual(coloring), false),
+            None => (Exposure::usual(coloring, scene), false),
         }
+    }
+
+    /// Whether every frame of a film is metered by itself.
+    pub fn is_each(&self) -> bool {
+        self.exposure == Some(ExposureFlag::Each)
     }
 
     /// The curve.

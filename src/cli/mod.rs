@@ -77,6 +77,10 @@ pub(crate) fn run() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(fault) => {
             let closed = fault.downcast_ref::<std::io::Error>();
+            // Who has read enough has no wish to hear of it.
+            if closed.is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe) {
+                return ExitCode::from(FAILURE);
+            }
             eprintln!("{} {fault}", error_mark());
             ExitCode::from(if closed.is_some() { FAILURE } else { MISTAKE })
         }

@@ -69,10 +69,11 @@ impl Render {
         let mut film = Film::new(0, 0);
         let shading = options.shading(&scene, [&camera])?;
         let tables = start.elapsed() - read;
+        scene.notes.extend(summary::table_notes(&shading));
         let report =
             render_again(&scene, &camera, &options, &shading, &mut film, |step| progress.show(&scene, step))?;
         progress.clear();
-        let (exposure, _) = self.look.develop.exposure(coloring);
+        let (exposure, _) = self.look.develop.exposure(coloring, &scene);
         let tone = self.look.develop.tone(coloring);
         let development = exposure.of_picture(tone, &scene, &camera, &options, &film)?;
         let before_writing = start.elapsed();
@@ -187,16 +188,19 @@ impl Done<'_> {
             self.report.triangles,
             self.report.pieces,
             self.options.tolerance,
-            summary::colors_in_words(self.options.coloring, &self.development),
+            match Format::of(&self.output) {
+                // The light as it is.
+                Ok(Format::Exr) => format!("{} colour", self.options.coloring),
+                _ => summary::colors_in_words(self.options.coloring, &self.development),
+            },
             1e3 * self.times.whole.as_secs_f64()
         );
         if self.film.covered() == 0 {
             line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
         }
-        let brightest = self.film.color.iter().flatten().copied().fold(0.0, f32::max);
-        // The least light that is not black in a PNG.
-        if self.film.covered() > 0 && brightest * self.development.ev.exp2() < 1.5e-4 {
-            line.push_str("note: all of it is too dark to be seen; try --color geometry or doppler, or another --exposure\n");
+        let brightest = summary::brightest(self.film);
+        if self.film.covered() > 0 && summary::is_dark(brightest, &self.development) {
+            line.push_str(&format!("note: {}\n", summary::dark_note(self.options.coloring)));
         }
         for note in &self.scene.notes {
             line.push_str(&format!("note: {note}\n"));
@@ -219,7 +223,7 @@ impl Done<'_> {
             "doppler_at": summary::doppler_at(options.doppler_at),
             "exposure_ev": development.ev,
             "tone": development.tone.to_string(),
-            "spectra": summary::spectra(shading),
+            "spectra": summary::spectra(shading.tables()),
             "tolerance_px": options.tolerance,
             "samples": options.samples,
             "camera": summary::camera(camera),

@@ -1,4 +1,4 @@
-use super::{Fault, stop};
+use super::{Fault, stop, summary};
 use indicatif::ProgressBar;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -51,6 +51,8 @@ pub struct Tally {
     pub changed: usize,
     pub surplus: usize,
     pub pieces: usize,
+    /// Pictures that show something, all of it black.
+    pub dark: usize,
     pub mapping: Duration,
     pub shading: Duration,
     pub coloring: Duration,
@@ -190,6 +192,8 @@ impl Shooting<'_> {
             if self.each_metered {
                 development.ev = development.tone.metered(film.color.iter().copied());
             }
+            let dark = summary::is_dark(summary::brightest(film), &development);
+            self.tally.dark += usize::from(dark && film.covered() > 0);
             let mut pixels = picture::pixels_srgb(film, &development);
             if let Some(overlay) = overlay {
                 let tolerance = self.options.tolerance;

@@ -57,6 +57,9 @@ fn read(
         let celerity = speed.map(of_resting).transpose()?;
         let mut view = View::default();
         lens(&mut view);
+        if celerity.is_some_and(|c| c.moves()) && !imported.moves() && !imported.lights.is_empty() {
+            imported.notes.push("the file's lights stay at rest while what they light moves; give them velocities in the file otherwise".into());
+        }
         if imported.moves() {
             return with_speed(authored(&name, imported, None, view), speed);
         }

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 use terrell::color::Coloring;
+use terrell::film::Film;
 use terrell::geodesic::{Event, World};
 use terrell::light::{DopplerAt, Shading, TableInfo, has_near_lights};
 use terrell::relativity::ApparentMap;
@@ -70,7 +71,7 @@ pub fn lights(scene: &Scene) -> Value {
 }
 
 /// The tables of colours under a shift: of what, what is assumed outside the visible, and how exact.
-pub fn spectra(shading: &Shading) -> Value {
+pub fn spectra(tables: &[TableInfo]) -> Value {
     let table = |table: &TableInfo| {
         json!({
             "spectrum": table.spectrum,
@@ -79,7 +80,20 @@ pub fn spectra(shading: &Shading) -> Value {
             "greatest_error": table.error,
         })
     };
-    shading.tables().iter().map(table).collect()
+    tables.iter().map(table).collect()
+}
+
+/// Tables that are not as good as usual.
+pub fn table_notes(shading: &Shading) -> Vec<String> {
+    let bad = shading.tables().iter().filter(|table| table.error > 0.02);
+    let note = |table: &TableInfo| {
+        format!(
+            "colours of the {} are good to {:.0} % only where they are dark or change fast",
+            table.spectrum,
+            100.0 * table.error
+        )
+    };
+    bad.map(note).collect()
 }
 
 /// What is not drawn of a scene's light, for people to read.
@@ -87,6 +101,24 @@ pub fn light_notes(scene: &Scene, coloring: Coloring) -> Option<String> {
     (coloring != Coloring::Doppler && has_near_lights(scene)).then(|| {
         "the lights' shadows and what surfaces throw on each other need ray tracing; it is shaded without them".to_owned()
     })
+}
+
+/// The greatest number of a film's colours.
+pub fn brightest(film: &Film) -> f32 {
+    film.color.iter().flatten().copied().fold(0.0, f32::max)
+}
+
+/// Whether so bright a point is black in a PNG.
+pub fn is_dark(brightest: f32, development: &Development) -> bool {
+    brightest * development.ev.exp2() < 1.5e-4
+}
+
+/// What to try where all is black.
+pub fn dark_note(coloring: Coloring) -> &'static str {
+    match coloring {
+        Coloring::Geometry => "all of it is too dark to be seen; try another --exposure",
+        _ => "all of it is too dark to be seen; try --color geometry or doppler, or another --exposure",
+    }
 }
 
 /// "spectral colour, +1.25 EV, filmic".

@@ -100,10 +100,17 @@ impl Transform {
         if let Some(tolerance) = self.tolerance.filter(|t| *t <= 0.0) {
             return Err(format!("--tolerance {tolerance} is not above 0").into());
         }
+        if let Some(ev) = self.exposure.filter(|ev| ev.abs() > 100.0) {
+            return Err(format!("--exposure {ev:e} is no EV between -100 and 100").into());
+        }
+        if self.exposure.is_some() && !self.color.coloring().is_beamed() {
+            return Err("--exposure is for colours as seen: add --color spectral, flat or bolometric".into());
+        }
         if self.fps <= 0.0 {
             return Err(format!("--fps {} is not above 0", self.fps).into());
         }
-        let scene = self.scene()?;
+        let mut scene = self.scene()?;
+        scene.notes.extend(self.notes(&scene));
         let camera = scene.camera()?;
         let output = self.output.clone().unwrap_or_else(|| format!("{}_seen.glb", scene.name).into());
         if Format::of(&output)? != Format::Glb && self.animation {
@@ -119,7 +126,7 @@ impl Transform {
                 FrameFlag::Camera => Axes::Camera,
             },
             coloring: self.color.coloring(),
-            ev: self.exposure.map(|ev| ev.clamp(-100.0, 100.0) as f32),
+            ev: self.exposure.map(|ev| ev as f32),
             ..Options::default()
         };
         let camera = Camera { observer: observers[0], ..camera };
@@ -141,6 +148,30 @@ impl Transform {
         let summary = done.summary(whole);
         self.report.finish(files, &scene.files, &summary)?;
         self.report.tell(&done.line(times.len(), whole, model.eye.is_none()), &summary)
+    }
+
+    /// What of colours as seen is not written.
+    fn notes(&self, scene: &Scene) -> Vec<String> {
+        let coloring = self.color.coloring();
+        let mut notes = Vec::new();
+        if !coloring.is_beamed() {
+            return notes;
+        }
+        notes.extend(summary::light_notes(scene, coloring));
+        if !scene.lights.is_empty() {
+            notes.push(
+                "light is taken at the vertices: where a lamp is near, give what it lights more of them"
+                    .into(),
+            );
+        }
+        let is_pov = self.output.as_ref().is_some_and(|path| matches!(Format::of(path), Ok(Format::Pov)));
+        if is_pov && scene.bodies.iter().any(|b| b.mesh.materials.iter().any(|m| m.is_textured())) {
+            notes.push(
+                "POV-Ray shows pictures as they are, without what is seen at the vertices; a .glb has both"
+                    .into(),
+            );
+        }
+        notes
     }
 
     /// The scene, with what the flags say over what it says itself.
@@ -202,13 +233,18 @@ impl Done<'_> {
         let bodies = summary::bodies_in_words(&summary::gammas(self.scene, self.camera));
         let usual = if self.options.tolerance.is_none() { " (3e-4 of each body)" } else { "" };
         let frames = if frames > 1 { format!(", {frames} frames") } else { String::new() };
+        let exposed = match self.options.coloring.is_beamed() {
+            true => format!(" at {:+.2} EV", self.report.ev),
+            false => String::new(),
+        };
         let mut line = format!(
-            "{}: flat spacetime, {bodies}{frames}: {} triangles cut into {} with {} vertices for {:.3e}{usual}, {:.0} ms\n",
+            "{}: flat spacetime, {bodies}{frames}: {} triangles cut into {} with {} vertices for {:.3e}{usual}, {} colour{exposed}, {:.0} ms\n",
             self.output.display(),
             self.report.triangles,
             self.report.pieces,
             self.report.vertices,
             self.report.tolerance,
+            self.options.coloring,
             1e3 * whole.as_secs_f64()
         );
         if no_eye {
@@ -233,6 +269,8 @@ impl Done<'_> {
             "scene": self.scene.name,
             "spacetime": "flat",
             "frame": self.axes(),
+            "color": self.options.coloring.to_string(),
+            "exposure_ev": self.report.ev,
             "tolerance": self.report.tolerance,
             "camera": summary::camera(self.camera),
             "bodies": summary::bodies(self.scene, self.camera),
@@ -256,6 +294,8 @@ impl Done<'_> {
             "triangles": self.report.triangles,
             "pieces": self.report.pieces,
             "vertices": self.report.vertices,
+            "lights": summary::lights(self.scene),
+            "spectra": summary::spectra(&self.report.tables),
             "doppler_range": self.report.doppler,
             "threads": rayon::current_num_threads(),
             "peak_memory_bytes": summary::peak_memory_bytes(),

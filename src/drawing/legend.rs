@@ -1,24 +1,34 @@
-use super::canvas::{Canvas, Ink, LIGHT, polygon};
+use super::canvas::{Canvas, Ink, LIGHT, SHADE, polygon};
 use super::{Shot, number, text};
 use crate::color::{Coloring, OCTAVES, encoded, false_color};
 use glam::DVec2;
 
 /// How what is seen has become a picture: the exposure, the tone curve, or the scale of false colours; at the upper
-/// right.
+/// left.
 pub(super) fn draw(canvas: &mut Canvas, shot: &Shot<'_>) {
     let lines = lines(shot);
     let em = 0.8 * canvas.em();
-    let right = canvas.width() - canvas.margin();
+    let left = canvas.margin();
     let mut y = canvas.margin() + em;
+    let room = canvas.width() - 2.0 * canvas.margin();
+    let scaled = shot.coloring == Coloring::Doppler;
+    // Behind it all, legible on anything.
+    let widest = lines.iter().map(|line| text::width(line, em).min(room)).fold(0.0, f64::max);
+    let bar = if scaled { bar_width(canvas, em) } else { 0.0 };
+    let bottom = y + 1.35 * em * (lines.len() - 1) as f64 + if scaled { 2.6 * em } else { 0.0 };
+    let half = 0.5 * canvas.margin();
+    let (from, to) = (DVec2::splat(half), DVec2::new(left + widest.max(bar) + half, bottom + half));
+    if let Some(plate) = polygon(&[from, DVec2::new(to.x, from.y), to, DVec2::new(from.x, to.y)]) {
+        canvas.fill(&plate, SHADE);
+    }
     for line in lines {
         // What does not fit is smaller.
-        let room = canvas.width() - 2.0 * canvas.margin();
         let em = em * (room / text::width(&line, em)).min(1.0);
-        text::write(canvas, &line, em, DVec2::new(right - text::width(&line, em), y), LIGHT);
+        text::write(canvas, &line, em, DVec2::new(left, y), LIGHT);
         y += 1.35 * em;
     }
-    if shot.coloring == Coloring::Doppler {
-        scale(canvas, DVec2::new(right, y - 0.7 * em), em);
+    if scaled {
+        scale(canvas, DVec2::new(left, y - 0.7 * em), em);
     }
 }
 
@@ -32,10 +42,15 @@ fn lines(shot: &Shot<'_>) -> Vec<String> {
     }
 }
 
+fn bar_width(canvas: &Canvas, em: f64) -> f64 {
+    (0.3 * canvas.width()).max(6.0 * em).min(canvas.width() - 2.0 * canvas.margin())
+}
+
 /// A bar of all false colours, by the logarithm of D, with its powers of two.
-fn scale(canvas: &mut Canvas, right_top: DVec2, em: f64) {
-    let width = (0.3 * canvas.width()).max(6.0 * em).min(canvas.width() - 2.0 * canvas.margin());
-    let (left, top, bottom) = (right_top.x - width, right_top.y, right_top.y + 0.8 * em);
+fn scale(canvas: &mut Canvas, left_top: DVec2, em: f64) {
+    let width = bar_width(canvas, em);
+    let (left, top, bottom) = (left_top.x, left_top.y, left_top.y + 0.8 * em);
+    let right = left + width;
     let steps = 120;
     for step in 0..steps {
         let [from, to] = [step, step + 1].map(|i| left + width * f64::from(i) / f64::from(steps));
@@ -44,16 +59,20 @@ fn scale(canvas: &mut Canvas, right_top: DVec2, em: f64) {
         let ink: Ink = [r, g, b, 255];
         // A little wider, so that no gaps are seen between them.
         let corners = [(from, top), (to + 0.5, top), (to + 0.5, bottom), (from, bottom)];
-        if let Some(path) = polygon(&corners.map(|(x, y)| DVec2::new(x.min(right_top.x), y))) {
+        if let Some(path) = polygon(&corners.map(|(x, y)| DVec2::new(x.min(right), y))) {
             canvas.fill(&path, ink);
         }
     }
     for (octave, label) in [(-5.0, "1/32"), (-3.0, "1/8"), (-1.0, "1/2"), (1.0, "2"), (3.0, "8"), (5.0, "32")]
     {
+        // In a narrow one, the ends and the middle ones make do.
+        if width < 12.0 * em && (octave as i32).abs() == 3 {
+            continue;
+        }
         let em = 0.75 * em;
         let half = 0.5 * text::width(label, em);
         let at = left + width * 0.5 * (1.0 + octave / OCTAVES);
-        let start = (at - half).clamp(left, right_top.x - 2.0 * half);
+        let start = (at - half).clamp(left, right - 2.0 * half);
         text::write(canvas, label, em, DVec2::new(start, bottom + 1.1 * em), LIGHT);
     }
 }

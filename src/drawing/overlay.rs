@@ -23,7 +23,7 @@ pub struct OverlayOptions {
     /// sight, in the middle of the picture, at the apparent distance of what is seen there (or, if nothing is, of
     /// the nearest body whose middle is in the picture); the distance is written beside it.
     pub scale_bar: bool,
-    /// Exposure and tone curve, or the scale of false colours, at the upper right.
+    /// Exposure and tone curve, or the scale of false colours, at the upper left.
     pub legend: bool,
     /// Text at the lower left.
     pub caption: Option<Caption>,

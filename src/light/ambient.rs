@@ -27,6 +27,11 @@ impl Bath {
         Self { rapidity }
     }
 
+    /// Of the body in the light's frame.
+    pub fn rapidity(&self) -> f64 {
+        self.rapidity
+    }
+
     /// Whether the body is at rest in it.
     pub fn is_still(&self) -> bool {
         self.rapidity < 1e-9

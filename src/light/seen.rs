@@ -170,6 +170,7 @@ impl MaterialShading {
     fn shines(&self, coloring: Coloring, doppler: f64, own: [f32; 3]) -> [f32; 3] {
         match (&self.own, coloring) {
             (Some(table), Coloring::Spectral) => table.color(ln(doppler), own),
+            (_, Coloring::Bolometric) => beamed(coloring, doppler, own.map(|v| v * self.strength)),
             _ => beamed(coloring, doppler, times(&self.unshifted, own)),
         }
     }

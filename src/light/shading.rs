@@ -34,7 +34,7 @@ pub enum DopplerAt {
 #[derive(Clone, Debug)]
 pub(super) struct SceneLight {
     pub light: Light,
-    /// Linear sRGB unshifted.
+    /// Linear sRGB unshifted; without spectra, what its colour is multiplied by.
     pub color: [f32; 3],
 }
 
@@ -51,6 +51,8 @@ pub(super) struct MaterialShading {
     pub lit: bool,
     pub law: EmissionLaw,
     pub gloss: Gloss,
+    /// How much it shines, by luminance or by radiance as its spectrum says.
+    pub strength: f32,
     /// Unshifted colours of what shines in red, green and blue; none where these are themselves.
     pub unshifted: Option<[f32; 9]>,
     /// Of what it shines with.
@@ -114,7 +116,13 @@ impl Shading {
             .map(|light| {
                 let fault = |source| ShadingError { name: format!("light '{}'", light.name), source };
                 let color = times(&unshifted(&light.spectrum).map_err(fault)?, light.color);
-                Ok(SceneLight { light: light.clone(), color: color.map(|v| v.max(0.0)) })
+                let color = if coloring == Coloring::Bolometric {
+                    // As much as its spectrum says, whatever of it is seen.
+                    light.color.map(|v| v * light.spectrum.strength.value() as f32)
+                } else {
+                    color.map(|v| v.max(0.0))
+                };
+                Ok(SceneLight { light: light.clone(), color })
             })
             .collect::<Result<Vec<_>, ShadingError>>()?;
         let mut bodies = Vec::with_capacity(scene.bodies.len());
@@ -142,6 +150,7 @@ impl Shading {
                         lit,
                         law: material.law,
                         gloss: material.gloss,
+                        strength: material.spectrum.strength.value() as f32,
                         unshifted: unshifted(&material.spectrum).map_err(fault)?,
                         own: own.transpose().map_err(fault)?,
                         reflected,

@@ -94,7 +94,7 @@ impl Tables {
             Incidence::Distant { doppler, .. } => {
                 RowTable::single(DopplerTable::new(range, |d| response.matrix(*doppler, d)))
             }
-            Incidence::Near => RowTable::by_lamp(rapidity, range, |lamp, d| coarse.matrix(lamp, d)),
+            Incidence::Near => RowTable::by_lamp(rapidity, range, ROWS, |lamp, d| coarse.matrix(lamp, d)),
             Incidence::Ambient { .. } => {
                 bath_table(&Bath::new(rapidity), range, |lamp, d| coarse.matrix(lamp, d))
             }
@@ -111,27 +111,34 @@ impl Tables {
     }
 }
 
+/// Rows of tables by the lamp's shift, for every e-fold: what surfaces reflect changes over a tenth of that. Sums of many do
+/// with half.
+const ROWS: f64 = 32.0;
+
+/// Steps of cos ψ.
+const ANGLES: usize = 128;
+
 /// By cos ψ: sums over rings of what comes with one shift.
 fn bath_table(bath: &Bath, range: f64, matrix: impl Fn(f64, f64) -> Matrix + Sync) -> RowTable {
     if bath.is_still() {
         let around = |d: f64| matrix(1.0, d).map(|column| column.map(|v| v * std::f64::consts::PI));
         return RowTable::single(DopplerTable::new(range, around));
     }
-    let rings = bath.rings(64);
-    let model = RowTable::model(rings[0].doppler.ln(), range, &matrix);
-    let shifted: Vec<DopplerTable> =
-        rings.iter().map(|ring| model.alike(|d| matrix(ring.doppler, d))).collect();
-    let row = |cos_psi: f64| {
-        let shares: Vec<f64> = rings.iter().map(|ring| ring.share(cos_psi.clamp(-1.0, 1.0))).collect();
-        model.alike(|d| {
-            let mut sum = [[0.0; 3]; 3];
-            for (table, share) in shifted.iter().zip(&shares) {
-                for (k, v) in table.at(d.ln()).into_iter().enumerate() {
-                    sum[k / 3][k % 3] += share * f64::from(v);
-                }
+    // Finer than the eye tells wavelengths apart, so that lines are no rings.
+    let rings = bath.rings(((2.0 * bath.rapidity() / 0.01) as usize).clamp(64, 2000) & !1);
+    let shifted = RowTable::by_lamp(bath.rapidity(), range, 0.5 * ROWS, &matrix);
+    let cosine = |i: usize| 2.0 * i as f64 / ANGLES as f64 - 1.0;
+    let shares: Vec<Vec<f64>> =
+        rings.iter().map(|ring| (0..=ANGLES).map(|i| ring.share(cosine(i))).collect()).collect();
+    let rows = |x: f64| {
+        let mut sums = vec![[0.0; 9]; ANGLES + 1];
+        for (ring, shares) in rings.iter().zip(&shares) {
+            let values = shifted.at(ring.doppler.ln(), x).map(f64::from);
+            for (sum, share) in sums.iter_mut().zip(shares).filter(|(_, share)| **share > 0.0) {
+                *sum = std::array::from_fn(|k| sum[k] + share * values[k]);
             }
-            sum
-        })
+        }
+        sums
     };
-    RowTable::evenly([-1.0, 1.0], 33, row)
+    RowTable::by_angle(ANGLES + 1, range, rings[0].doppler.ln(), matrix, rows)
 }

@@ -22,6 +22,8 @@ pub struct Mesh {
     pub uv: Vec<[f32; 2]>,
     /// Unit normals in the rest frame, one a vertex, or none.
     pub normals: Vec<[f32; 3]>,
+    /// Whether its paint stands for colours it does not have; see [`paint_as_clay`](Self::paint_as_clay).
+    pub clay: bool,
 }
 
 /// Linear sRGB colours (Rec. 709 primaries, D65) of a mesh's surface; where there are materials, times theirs.
@@ -166,6 +168,7 @@ impl Mesh {
 
     /// Gives the whole mesh one colour, in place of paint, textures and emission.
     pub fn repaint(&mut self, color: [f32; 3]) {
+        self.clay = false;
         self.paint = Paint::Uniform(color);
         for material in &mut self.materials {
             *material = Material {
@@ -228,6 +231,7 @@ impl Mesh {
             Paint::CLAY.map(|v| v * (0.08 + 0.92 * shade * shade))
         };
         self.paint = Paint::Faces((0..self.triangles.len()).map(color).collect());
+        self.clay = true;
     }
 
     /// Joins another mesh behind this one, its triangles numbered on.

@@ -30,14 +30,14 @@ pub(super) fn matching() -> impl Iterator<Item = (f64, DVec3)> {
 
 /// x̄, ȳ, z̄ at a wavelength, by a cubic between the nanometres.
 ///
-/// Beyond the table's ends, where they are at most 6·10⁻⁴, they fade by a tenth a nanometre, about as they do there: a
-/// line that leaves the visible is not switched off.
+/// Beyond the table's ends, where they are at most 6·10⁻⁴, they fade by a tenth a nanometre, about as they do there, and
+/// more, until after a hundred they are gone: a line that leaves the visible is not switched off.
 pub(super) fn matching_at(nm: f64) -> DVec3 {
     let place = nm - VISIBLE_NM[0];
     let away = (-place).max(place - (LINES - 1) as f64);
     if away > 0.0 {
         let edge = if place < 0.0 { MATCHING[0] } else { MATCHING[LINES - 1] };
-        return edge * (-0.1 * away).exp();
+        return edge * (-0.1 * away).exp() * (1.0 - away / 100.0).max(0.0).powi(3);
     }
     let low = (place as usize).clamp(1, LINES - 3);
     let weights = cubic(place - low as f64);
@@ -90,7 +90,8 @@ mod tests {
         let rgb = [0.2, 0.5, 0.9];
         let exact = y.dot(DVec3::from_array(rgb.map(f64::from)));
         assert!((f64::from(luminance(rgb)) - exact).abs() < 1e-6);
-        assert!((matching_at(350.0) / MATCHING[0] - DVec3::splat((-1f64).exp())).length() < 1e-12);
+        assert!((matching_at(350.0) / MATCHING[0] - DVec3::splat((-1f64).exp() * 0.729)).length() < 1e-12);
+        assert_eq!(matching_at(259.0), DVec3::ZERO);
         assert_eq!(matching_at(f64::INFINITY), DVec3::ZERO);
         assert_eq!(matching_at(830.0), MATCHING[470]);
         assert_eq!(matching_at(500.0), MATCHING[140]);

@@ -1,6 +1,7 @@
 use super::basis::{Beyond, reflectances};
-use super::observer::{matching, matching_at, rgb_from_xyz};
+use super::observer::{VISIBLE_NM, matching, matching_at, rgb_from_xyz};
 use super::shape::{SIGMA, Shape, Spectrum, SpectrumError};
+use super::tabulated::Tabulated;
 use glam::DVec3;
 
 /// Columns: the linear sRGB seen of a surface that is red, green, blue.
@@ -47,7 +48,7 @@ impl<'a> Response<'a> {
     /// reflected by them (or shone through their colour), and seen at `doppler`.
     ///
     /// By radiance: D⁵ I_λ for both shifts together. A rectangle sum over 360 … 830 nm as it is seen; lines are summed
-    /// over their own profile.
+    /// over their own profile, and tables from corner to corner.
     pub fn matrix(&self, lamp: f64, doppler: f64) -> Matrix {
         let Spectrum { shape, beyond, .. } = self.spectrum;
         let mut columns = [DVec3::ZERO; 3];
@@ -58,27 +59,23 @@ impl<'a> Response<'a> {
             });
             return columns.map(|xyz| (rgb_from_xyz(xyz) * self.scale).to_array());
         }
-        // A table may have corners, and lines finer than a nanometre as it is seen.
-        let parts = match shape {
-            Shape::Tabulated(table) => (4.0 * whole / table.finest_nm()).ceil().clamp(4.0, 32.0) as usize,
-            _ => 1,
-        };
-        for (seen_nm, xyz) in matching().step_by(self.stride) {
-            for part in 0..parts {
-                let nm = seen_nm + (part as f64 + 0.5) / parts as f64 - 0.5;
-                let surface_nm = nm * doppler;
-                let source_nm = nm * whole;
-                let light = shape.at(source_nm, *beyond) * self.filter(source_nm) / parts as f64;
-                if light == 0.0 {
-                    continue;
-                }
-                let reflected = reflectances(surface_nm, self.beyond);
-                for (column, share) in columns.iter_mut().zip(reflected) {
+        let mut add = |nm: f64, light: f64, xyz: DVec3| {
+            let light = light * self.filter(nm * whole);
+            if light != 0.0 {
+                for (column, share) in columns.iter_mut().zip(reflectances(nm * doppler, self.beyond)) {
                     *column += xyz * (light * share);
                 }
             }
+        };
+        match shape {
+            Shape::Tabulated(table) => of_table(table, *beyond, whole, &mut add),
+            _ => {
+                for (nm, xyz) in matching().step_by(self.stride) {
+                    add(nm, self.stride as f64 * shape.at(nm * whole, *beyond), xyz);
+                }
+            }
         }
-        let scale = self.scale * self.stride as f64 * whole.powi(5);
+        let scale = self.scale * whole.powi(5);
         columns.map(|xyz| (rgb_from_xyz(xyz) * scale).to_array())
     }
 
@@ -89,6 +86,26 @@ impl<'a> Response<'a> {
         }
         let parts = reflectances(nm, self.spectrum.beyond);
         parts.iter().zip(self.color).map(|(part, color)| part * color).sum()
+    }
+}
+
+/// Sums over a table as it is seen, shifted by `whole`: by Simpson's rule between all its corners and all nanometres. `add`
+/// takes a wavelength as seen, light there times its share of nanometres, and the colour-matching functions.
+pub(super) fn of_table(table: &Tabulated, beyond: Beyond, whole: f64, add: &mut impl FnMut(f64, f64, DVec3)) {
+    let [first, last] = VISIBLE_NM;
+    let mut corners: Vec<f64> = table.wavelengths(first * whole, last * whole).map(|nm| nm / whole).collect();
+    corners.extend(matching().map(|(nm, _)| nm));
+    corners.sort_unstable_by(f64::total_cmp);
+    for ends in corners.windows(2) {
+        let width = ends[1] - ends[0];
+        let middle = 0.5 * (ends[0] + ends[1]);
+        let light = [ends[0], middle, ends[1]].map(|nm| table.at(nm * whole, beyond));
+        if width > 0.0 && light != [0.0; 3] {
+            for ((nm, light), share) in [ends[0], middle, ends[1]].into_iter().zip(light).zip([1.0, 4.0, 1.0])
+            {
+                add(nm, light * share * width / 6.0, matching_at(nm));
+            }
+        }
     }
 }
 

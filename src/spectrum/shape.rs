@@ -50,6 +50,15 @@ pub enum Strength {
     Radiance(f64),
 }
 
+impl Strength {
+    /// The number, whatever it counts.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Luminance(v) | Self::Radiance(v) => v,
+        }
+    }
+}
+
 /// A spectrum that cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SpectrumError {
@@ -66,7 +75,9 @@ pub enum SpectrumError {
         most: f64,
     },
     /// Nothing of it is seen unshifted.
-    #[error("unshifted it is not seen, so it has no luminance; say its radiance instead")]
+    #[error(
+        "unshifted it is not seen (are wavelengths in nanometres?), so it has no luminance; say its radiance instead"
+    )]
     NotSeen,
     /// Over all wavelengths there is no end of it.
     #[error("its radiance over all wavelengths is infinite; say its luminance instead")]
@@ -187,6 +198,13 @@ impl Spectrum {
                 let unit: f64 = match &self.shape {
                     // A line may be finer than a nanometre.
                     Shape::Line { .. } => super::response::of_line(&self.shape, 1.0, 1.0, |_| 1.0).y,
+                    Shape::Tabulated(table) => {
+                        let mut sum = 0.0;
+                        super::response::of_table(table, self.beyond, 1.0, &mut |_, light, xyz| {
+                            sum += light * xyz.y;
+                        });
+                        sum
+                    }
                     shape => matching().map(|(nm, xyz)| xyz.y * shape.at(nm, self.beyond)).sum(),
                 };
                 // Of a black body at room temperature a part in 10¹⁹ is seen.

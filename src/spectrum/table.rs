@@ -6,30 +6,35 @@ use rayon::prelude::*;
 ///
 /// Nodes are evenly spaced, D = 1 among them, and values between them are those of the cubic through the four nearest. How
 /// many there are is decided by the error itself: they are doubled until, in the middle between any two, nothing is
-/// off by more than [`ERROR`](Self::ERROR) of the greatest number there (or of a thousandth of the greatest within an
-/// octave, as where a line goes out of sight).
+/// off by more than [`ERROR`](Self::ERROR) of the greatest number there, or of a thousandth of the greatest within an
+/// octave, as where a line goes out of sight, or of 10⁻²⁰ of white. There are at most 8192 on either side of D = 1;
+/// [`error`](Self::error) says what was reached.
 #[derive(Clone, Debug)]
 pub struct DopplerTable {
     /// ln D of the second node; the first and the last are there for the cubic.
     start: f64,
     inverse_step: f64,
     nodes: Vec<Node>,
-    /// Powers of D with which it goes on below and above.
-    ends: [f64; 2],
     error: f64,
 }
 
-/// How far |ln D| goes in a table; beyond, spectra are the powers they tend to.
-const FARTHEST: f64 = 8.0;
+/// How far |ln D| goes in any table: γ of a billion.
+const FARTHEST: f64 = 22.0;
 
 /// The most nodes on either side of D = 1.
-const MOST: usize = 4096;
+const MOST: usize = 8192;
 
 /// Steps per unit of ln D that are tried first.
 const FIRST: f64 = 16.0;
 
 /// What is less, of the greatest within an octave, need not be exact.
 const VANISHING: f64 = 1e-3;
+
+/// What is less need not be exact, either: no exposure shows it.
+const DARK: f64 = 1e-20;
+
+/// Brighter light is as bright: colours are kept, and can be averaged.
+const BRIGHTEST: f64 = 1e35;
 
 /// Spacing of nodes.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +49,11 @@ impl Grid {
     fn places(self) -> impl IndexedParallelIterator<Item = f64> {
         (0..2 * self.side + 3).into_par_iter().map(move |i| (i as f64 - (self.side + 1) as f64) * self.step)
     }
+
+    /// Nodes within an octave.
+    fn octave(self) -> usize {
+        (std::f64::consts::LN_2 / self.step) as usize
+    }
 }
 
 /// Weights of the four nodes around a place between the second and the third.
@@ -54,7 +64,9 @@ fn weights(t: f64) -> [f32; 4] {
 
 fn flat(matrix: &Matrix) -> [f64; 9] {
     let [r, g, b] = matrix;
-    [r[0], r[1], r[2], g[0], g[1], g[2], b[0], b[1], b[2]]
+    let all = [r[0], r[1], r[2], g[0], g[1], g[2], b[0], b[1], b[2]];
+    let most = greatest(&all);
+    if most > BRIGHTEST { all.map(|v| v * (BRIGHTEST / most)) } else { all }
 }
 
 /// Columns, with room for four numbers each.
@@ -66,6 +78,17 @@ fn node(values: &[f64; 9]) -> Node {
 
 fn greatest(values: &[f64; 9]) -> f64 {
     values.iter().fold(0.0, |a, v| a.max(v.abs()))
+}
+
+/// The greatest difference, of what has to be exact; `near` are the greatest numbers around.
+fn off(got: &[f64; 9], exact: &[f64; 9], near: &[f64]) -> f64 {
+    let off = (0..9).map(|k| (got[k] - exact[k]).abs()).fold(0.0, f64::max);
+    let near = near.iter().copied().fold(0.0, f64::max);
+    off / greatest(exact).max(VANISHING * near).max(DARK)
+}
+
+fn around(i: usize, reach: usize, all: &[f64]) -> &[f64] {
+    &all[i.saturating_sub(reach)..(i + reach).min(all.len())]
 }
 
 impl DopplerTable {
@@ -81,8 +104,7 @@ impl DopplerTable {
     fn within(range: f64, most_nodes: usize, accepted: f64, exact: impl Fn(f64) -> Matrix + Sync) -> Self {
         let exact = |x: f64| flat(&exact(x.exp()));
         if range.is_nan() || range < 1e-15 {
-            let node = node(&exact(0.0));
-            return Self { start: 0.0, inverse_step: 0.0, nodes: vec![node; 4], ends: [0.0; 2], error: 0.0 };
+            return Self { start: 0.0, inverse_step: 0.0, nodes: vec![node(&exact(0.0)); 4], error: 0.0 };
         }
         let range = range.min(FARTHEST);
         let side = ((range * FIRST).ceil() as usize).max(2);
@@ -92,17 +114,12 @@ impl DopplerTable {
             let middle = |i: usize| exact((i as f64 - grid.side as f64 + 0.5) * grid.step);
             let middles: Vec<[f64; 9]> = (0..2 * grid.side).into_par_iter().map(middle).collect();
             let sizes: Vec<f64> = nodes.iter().map(greatest).collect();
-            let octave = (std::f64::consts::LN_2 / grid.step) as usize;
-            let off = |(i, exact): (usize, &[f64; 9])| {
-                let w = cubic(0.5);
-                let between = |k: usize| (0..4).map(|j| w[j] * nodes[i + j][k]).sum::<f64>();
-                let off = (0..9).map(|k| (between(k) - exact[k]).abs()).fold(0.0, f64::max);
-                let near = &sizes[i.saturating_sub(octave)..(i + octave).min(sizes.len())];
-                let near = near.iter().copied().fold(0.0, f64::max);
-                // Where all has vanished it is right.
-                if off == 0.0 { 0.0 } else { off / greatest(exact).max(VANISHING * near) }
-            };
-            let error = middles.iter().enumerate().map(off).fold(0.0, f64::max);
+            let w = cubic(0.5);
+            let error = middles.iter().enumerate().map(|(i, exact)| {
+                let between = std::array::from_fn(|k| (0..4).map(|j| w[j] * nodes[i + j][k]).sum());
+                off(&between, exact, around(i, grid.octave(), &sizes))
+            });
+            let error = error.fold(0.0, f64::max);
             if error <= accepted || 2 * grid.side > most_nodes {
                 return Self::of_nodes(grid, &nodes, error);
             }
@@ -120,68 +137,53 @@ impl DopplerTable {
     }
 
     fn of_nodes(grid: Grid, nodes: &[[f64; 9]], error: f64) -> Self {
-        let power = |last: usize, before: usize| {
-            let (a, b) = (greatest(&nodes[before]), greatest(&nodes[last]));
-            let sign = if last > before { 1.0 } else { -1.0 };
-            let power = sign * (b / a).ln() / grid.step;
-            // What has all but vanished, a line out of sight, say, does not come back.
-            if power.is_finite() { power.clamp(-60.0, 60.0) } else { 0.0 }
-        };
-        let last = nodes.len() - 1;
-        let ends = [power(0, 1), power(last, last - 1)];
         let nodes = nodes.iter().map(node).collect();
-        Self { start: -(grid.side as f64) * grid.step, inverse_step: 1.0 / grid.step, nodes, ends, error }
+        Self { start: -(grid.side as f64) * grid.step, inverse_step: 1.0 / grid.step, nodes, error }
     }
 
-    /// A table with nodes at the same places, whose error is taken for the same.
-    pub fn alike(&self, exact: impl Fn(f64) -> Matrix + Sync) -> Self {
-        let side = (self.nodes.len() - 3) / 2;
+    fn grid(&self) -> Grid {
+        Grid { step: 1.0 / self.inverse_step, side: (self.nodes.len() - 3) / 2 }
+    }
+
+    /// A table with nodes at the same places; its error is not looked at.
+    fn alike(&self, exact: impl Fn(f64) -> Matrix + Sync) -> Self {
         if self.inverse_step == 0.0 {
             return Self::new(0.0, exact);
         }
-        let grid = Grid { step: 1.0 / self.inverse_step, side };
-        let nodes: Vec<[f64; 9]> = grid.places().map(|x| flat(&exact(x.exp()))).collect();
-        Self::of_nodes(grid, &nodes, self.error)
+        let nodes: Vec<[f64; 9]> = self.grid().places().map(|x| flat(&exact(x.exp()))).collect();
+        Self::of_nodes(self.grid(), &nodes, self.error)
+    }
+
+    /// Weights of four nodes, and the first of them. Beyond its ends a table stays as it is there.
+    #[inline]
+    fn place(&self, ln_doppler: f64) -> ([f32; 4], &[Node]) {
+        let last = (self.nodes.len() - 3) as f64;
+        let place = (ln_doppler - self.start) * self.inverse_step;
+        // NaN becomes the first.
+        let within = place.max(0.0).min(last);
+        let low = (within as usize).min(self.nodes.len() - 4);
+        (weights(within - low as f64), &self.nodes[low..low + 4])
     }
 
     /// The nine numbers at ln D: columns for red, green and blue.
     pub fn at(&self, ln_doppler: f64) -> [f32; 9] {
-        let [r, g, b] =
-            [0, 1, 2].map(|i| self.color(ln_doppler, std::array::from_fn(|k| f32::from(u8::from(k == i)))));
-        [r[0], r[1], r[2], g[0], g[1], g[2], b[0], b[1], b[2]]
+        let (w, nodes) = self.place(ln_doppler);
+        std::array::from_fn(|k| nodes.iter().zip(w).map(|(node, w)| w * node[k / 3][k % 3]).sum())
     }
 
     /// The colour seen at ln D of a surface of the colour `own`.
     #[inline]
     pub fn color(&self, ln_doppler: f64, own: [f32; 3]) -> [f32; 3] {
-        let last = (self.nodes.len() - 3) as f64;
-        let place = (ln_doppler - self.start) * self.inverse_step;
-        let within = place.max(0.0).min(last);
-        let low = (within as usize).min(self.nodes.len() - 4);
-        let w = weights(within - low as f64);
+        let (w, nodes) = self.place(ln_doppler);
         // Four at a time.
         let mut sum = [0.0; 4];
-        for (node, w) in self.nodes[low..low + 4].iter().zip(w) {
+        for (node, w) in nodes.iter().zip(w) {
             for (column, own) in node.iter().zip(own) {
                 let factor = w * own;
                 sum = std::array::from_fn(|k| sum[k] + factor * column[k]);
             }
         }
-        let mut out = [sum[0], sum[1], sum[2]];
-        if place != within {
-            self.go_on(&mut out, (place - within) / self.inverse_step);
-        }
-        out
-    }
-
-    #[cold]
-    fn go_on(&self, values: &mut [f32; 3], beyond: f64) {
-        let power = self.ends[usize::from(beyond > 0.0)];
-        if beyond.is_finite() {
-            // Spectra that fall steeply on either side are dark beyond.
-            let factor = (power * beyond).min(80.0).exp() as f32;
-            *values = values.map(|v| v * factor);
-        }
+        [sum[0], sum[1], sum[2]]
     }
 
     /// How many nodes there are.
@@ -195,24 +197,36 @@ impl DopplerTable {
     }
 }
 
-/// Doppler tables by a second quantity, a cubic between the four nearest.
+/// Doppler tables by a second quantity.
 #[derive(Clone, Debug)]
 pub struct RowTable {
     start: f64,
     inverse_step: f64,
-    /// One beyond each end; or one alone.
     rows: Vec<DopplerTable>,
+    between: Between,
+    error: f64,
+}
+
+/// What lies between rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Between {
+    /// Nothing: there is one.
+    One,
+    /// By the shift of the lamp: a cubic through four, one row beyond each end. Columns are by both shifts together: what
+    /// is seen of a spectrum stands still in them, and all that changes from row to row is what the surface reflects.
+    Lamps,
+    /// Straight lines: nothing becomes negative.
+    Lines,
 }
 
 /// The most nodes on either side of D = 1 in tables of which there are many.
-const MOST_IN_ROWS: usize = 512;
+const MOST_IN_ROWS: usize = 1024;
 
-/// Light shifted farther to the red than this, by ln D, does not count.
-const DARKEST: f64 = -2.5;
-
-/// Rows per unit of ln D of the lamp, and the most there are.
-const ROWS: f64 = 32.0;
+/// The most rows by lamps there are.
 const MOST_ROWS: f64 = 160.0;
+
+/// Light shifted farther to the red than this, by ln D, does not decide how fine tables are.
+const DARKEST: f64 = -2.5;
 
 impl RowTable {
     /// The error between nodes that is accepted in tables of which there are many.
@@ -220,51 +234,122 @@ impl RowTable {
 
     /// One row, whatever the second quantity.
     pub fn single(row: DopplerTable) -> Self {
-        Self { start: 0.0, inverse_step: 0.0, rows: vec![row] }
+        let error = row.error;
+        Self { start: 0.0, inverse_step: 0.0, rows: vec![row], between: Between::One, error }
     }
 
     /// For light that reaches surfaces with |ln D| up to `lamp_range`, and is seen with |ln D| up to `range`; `exact` by
-    /// the two Doppler factors.
-    pub fn by_lamp(lamp_range: f64, range: f64, exact: impl Fn(f64, f64) -> Matrix + Sync) -> Self {
+    /// the two Doppler factors, `rows` are for every e-fold of the lamp's.
+    pub fn by_lamp(
+        lamp_range: f64,
+        range: f64,
+        rows: f64,
+        exact: impl Fn(f64, f64) -> Matrix + Sync,
+    ) -> Self {
         let lamp_range = lamp_range.min(FARTHEST);
         if lamp_range < 1e-12 {
             return Self::single(DopplerTable::new(range, |d| exact(1.0, d)));
         }
-        let model = Self::model(-lamp_range, range, &exact);
-        let row = |lamp: f64| model.alike(|d| exact(lamp.exp(), d));
-        let count = (2.0 * lamp_range * ROWS).ceil().clamp(4.0, MOST_ROWS) as usize;
-        Self::evenly([-lamp_range, lamp_range], count, row)
+        let by_both = |lamp: f64, both: f64| exact(lamp.exp(), both / lamp.exp());
+        let model = DopplerTable::within(range + lamp_range, MOST_IN_ROWS, Self::ERROR, |d| by_both(0.0, d));
+        let count = (2.0 * lamp_range * rows).ceil().clamp(4.0, MOST_ROWS) as usize;
+        let step = 2.0 * lamp_range / (count - 1) as f64;
+        let place = |i: f64| -lamp_range + (i - 1.0) * step;
+        let row = |i: usize| model.alike(|both| by_both(place(i as f64), both));
+        let rows = (0..count + 2).into_par_iter().map(row).collect();
+        let mut out =
+            Self { start: -lamp_range, inverse_step: 1.0 / step, rows, between: Between::Lamps, error: 0.0 };
+        // In the middle between some of the rows.
+        let sampled = (1..count).step_by(count.div_ceil(12));
+        let error = sampled.map(|i| {
+            let lamp = place(i as f64 + 0.5);
+            let grid = model.grid();
+            let exact: Vec<(f64, [f64; 9])> =
+                grid.places().map(|x| (x, flat(&by_both(lamp, x.exp())))).collect();
+            let sizes: Vec<f64> = exact.iter().map(|(_, v)| greatest(v)).collect();
+            let seen = exact.iter().enumerate().map(|(k, (x, exact))| {
+                off(&out.at(lamp, x - lamp).map(f64::from), exact, around(k, grid.octave(), &sizes))
+            });
+            seen.fold(0.0, f64::max)
+        });
+        out.error = error.fold(model.error, f64::max);
+        out
     }
 
-    /// A table whose nodes serve for many, of light that comes with no less than the given ln D: the reddest needs the
-    /// most, as long as there is any.
-    pub fn model(reddest: f64, range: f64, exact: impl Fn(f64, f64) -> Matrix + Sync) -> DopplerTable {
+    /// For what `count` rows with evenly spaced places from −1 to 1 say: `rows` gives all of them at a Doppler factor. How
+    /// fine it is in D is decided by `model`, for light that comes with no less than the given ln D.
+    pub fn by_angle(
+        count: usize,
+        range: f64,
+        reddest: f64,
+        model: impl Fn(f64, f64) -> Matrix + Sync,
+        rows: impl Fn(f64) -> Vec<[f64; 9]> + Sync,
+    ) -> Self {
         let lamp = reddest.max(DARKEST).exp();
-        DopplerTable::within(range, MOST_IN_ROWS, RowTable::ERROR, |d| exact(lamp, d))
+        let model = DopplerTable::within(range, MOST_IN_ROWS, Self::ERROR, |d| model(lamp, d));
+        let places: Vec<f64> = match model.inverse_step {
+            0.0 => vec![0.0; 4],
+            _ => model.grid().places().collect(),
+        };
+        let all: Vec<Vec<[f64; 9]>> = places.into_par_iter().map(&rows).collect();
+        let row = |i: usize| DopplerTable {
+            nodes: all.iter().map(|rows| node(&rows[i])).collect(),
+            ..model.clone()
+        };
+        // A straight line is off by an eighth of the second difference.
+        let bent = |rows: &Vec<[f64; 9]>| {
+            let most = rows.iter().map(greatest).fold(DARK, f64::max);
+            let second = |w: &[[f64; 9]]| {
+                (0..9).map(|k| (w[0][k] - 2.0 * w[1][k] + w[2][k]).abs()).fold(0.0, f64::max) / 8.0
+            };
+            rows.windows(3).map(second).fold(0.0, f64::max) / most
+        };
+        let error = all.iter().map(bent).fold(model.error, f64::max);
+        let inverse_step = 0.5 * (count - 1) as f64;
+        let rows = (0..count).map(row).collect();
+        Self { start: -1.0, inverse_step, rows, between: Between::Lines, error }
     }
 
-    /// `count` rows, at least two, from the first place to the last; `row` makes one.
-    pub fn evenly([first, last]: [f64; 2], count: usize, row: impl Fn(f64) -> DopplerTable + Sync) -> Self {
-        let step = (last - first) / (count - 1) as f64;
-        let place = |i: usize| first + (i as f64 - 1.0) * step;
-        let rows = (0..count + 2).into_par_iter().map(|i| row(place(i))).collect();
-        Self { start: first, inverse_step: 1.0 / step, rows }
+    /// Rows around a place with their weights, and where to look in them.
+    #[inline]
+    fn place(&self, place: f64, ln_doppler: f64) -> ([f32; 4], &[DopplerTable], f64) {
+        // NaN becomes the first.
+        let place = |last: usize| ((place - self.start) * self.inverse_step).max(0.0).min(last as f64);
+        match self.between {
+            Between::One => ([1.0, 0.0, 0.0, 0.0], &self.rows, ln_doppler),
+            Between::Lamps => {
+                let within = place(self.rows.len() - 3);
+                let low = (within as usize).min(self.rows.len() - 4);
+                let lamp = self.start + within / self.inverse_step;
+                (weights(within - low as f64), &self.rows[low..low + 4], ln_doppler + lamp)
+            }
+            Between::Lines => {
+                let within = place(self.rows.len() - 1);
+                let low = (within as usize).min(self.rows.len() - 2);
+                let t = (within - low as f64) as f32;
+                ([1.0 - t, t, 0.0, 0.0], &self.rows[low..low + 2], ln_doppler)
+            }
+        }
     }
 
-    /// The colour seen at ln D of a surface of the colour `own`, in the row at `place`.
+    /// The nine numbers at a place and ln D.
+    pub fn at(&self, place: f64, ln_doppler: f64) -> [f32; 9] {
+        let (weights, rows, column) = self.place(place, ln_doppler);
+        let mut sum = [0.0; 9];
+        for (row, w) in rows.iter().zip(weights) {
+            let values = row.at(column);
+            sum = std::array::from_fn(|k| sum[k] + w * values[k]);
+        }
+        sum
+    }
+
+    /// The colour seen at ln D of a surface of the colour `own`, at a place between the rows.
     #[inline]
     pub fn color(&self, place: f64, ln_doppler: f64, own: [f32; 3]) -> [f32; 3] {
-        if let [row] = &self.rows[..] {
-            return row.color(ln_doppler, own);
-        }
-        let last = (self.rows.len() - 3) as f64;
-        // NaN becomes the first.
-        let within = ((place - self.start) * self.inverse_step).max(0.0).min(last);
-        let low = (within as usize).min(self.rows.len() - 4);
-        let w = weights(within - low as f64);
+        let (weights, rows, column) = self.place(place, ln_doppler);
         let mut sum = [0.0; 3];
-        for (row, w) in self.rows[low..low + 4].iter().zip(w) {
-            let color = row.color(ln_doppler, own);
+        for (row, w) in rows.iter().zip(weights) {
+            let color = row.color(column, own);
             sum = [0, 1, 2].map(|i| sum[i] + w * color[i]);
         }
         sum
@@ -275,8 +360,8 @@ impl RowTable {
         self.rows.iter().map(DopplerTable::nodes).sum()
     }
 
-    /// The greatest error between the nodes of a row, of the greatest number there.
+    /// The greatest error found between nodes and between rows, of the greatest number there.
     pub fn error(&self) -> f64 {
-        self.rows.iter().map(DopplerTable::error).fold(0.0, f64::max)
+        self.error
     }
 }

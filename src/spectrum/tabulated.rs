@@ -55,7 +55,9 @@ impl Tabulated {
                 text.split([',', ';', '\t']).map(|v| v.trim().parse().ok()).collect();
             let first = std::mem::take(&mut header);
             let [Some(nm), Some(value)] = fields[..] else {
-                if first && fields.iter().all(Option::is_none) {
+                // Words, not damaged numbers.
+                let words = text.starts_with(|c: char| c.is_alphabetic());
+                if first && words && fields.iter().all(Option::is_none) {
                     continue;
                 }
                 return Err(TabulatedError::Line { line, text: text.chars().take(60).collect() });
@@ -96,9 +98,10 @@ impl Tabulated {
         self.points.windows(2).map(|p| 0.5 * (p[0][1] + p[1][1]) * (p[1][0] - p[0][0])).sum()
     }
 
-    /// The least distance of two wavelengths.
-    pub fn finest_nm(&self) -> f64 {
-        self.points.windows(2).map(|p| p[1][0] - p[0][0]).fold(f64::INFINITY, f64::min)
+    /// The wavelengths of the table between two others.
+    pub(super) fn wavelengths(&self, from: f64, to: f64) -> impl Iterator<Item = f64> {
+        let start = self.points.partition_point(|p| p[0] < from);
+        self.points[start..].iter().map(|p| p[0]).take_while(move |nm| *nm <= to)
     }
 }
 

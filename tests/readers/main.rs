@@ -168,17 +168,18 @@ fn judge<E: std::fmt::Display>(input: usize, read: impl FnOnce() -> Result<Impor
 fn look_at(imported: Imported) {
     imported.parts.iter().for_each(|part| part.mesh.check().unwrap());
     let view = View { size: [32, 24], ..View::default() };
-    draw(&authored("m", imported.clone(), None, view.clone()), Coloring::Flat);
+    draw(&authored("m", imported.clone(), None, view.clone()));
     let fast = Celerity::from_beta(0.9 * glam::DVec3::X).unwrap();
-    draw(&framed("m", imported, fast, view), Coloring::Spectral);
+    draw(&framed("m", imported, fast, view));
 }
 
-/// An error or a picture, without what is no number.
-fn draw(scene: &Scene, coloring: Coloring) {
+/// An error or a picture, without what is no number. Flat: tables of spectra would take most of the time.
+fn draw(scene: &Scene) {
     let _ = scene.check_animations();
     let Ok(mut camera) = scene.camera() else { return };
     camera.lens = Lens::new(Projection::Pinhole, 60.0, 32, 24).unwrap();
-    let options = Options { tolerance: 1.0, most_pieces: 10_000, coloring, ..Default::default() };
+    let options =
+        Options { tolerance: 1.0, most_pieces: 10_000, coloring: Coloring::Flat, ..Default::default() };
     if let Ok((film, _)) = render(scene, &camera, &options, |_| ()) {
         assert!(film.distance.iter().chain(&film.doppler).all(|v| *v >= 0.0));
         assert!(film.color.iter().flatten().all(|v| v.is_finite()));

@@ -5,7 +5,6 @@ use super::{BYTES_A_VERTEX, MOST_BYTES, TOML, cases, draw, most_vertices, peak};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use std::path::Path;
-use terrell::color::Coloring;
 use terrell::geodesic::Celerity;
 use terrell::render::{Options, render};
 use terrell::scene::{Speed, builtin_mesh, builtin_meshes, builtin_scenes, parse_scene};
@@ -39,11 +38,11 @@ pub fn judge(text: &str) {
                 scene.camera().unwrap();
             }
             scene.view.size = [32, 24];
-            draw(&scene, Coloring::Flat);
+            draw(&scene);
             scene
                 .set_speed(Speed::Along(Celerity::from_beta(0.9 * glam::DVec3::X).unwrap().magnitude()))
                 .unwrap();
-            draw(&scene, Coloring::Spectral);
+            draw(&scene);
         }
     }
     if peak > MOST_BYTES.0 * text.len() + MOST_BYTES.1 {

@@ -3,7 +3,7 @@ use super::light::Finish;
 use super::source::{Source, VelocityKeys, did_you_mean, velocity_keys};
 use super::tables::{BodyTable, RotationTable, Scale};
 use crate::relativity::Motion;
-use crate::scene::import::{Choice, ImportError, has_scenes, import_choosing, is_mesh_file};
+use crate::scene::import::{CLAY_NOTE, Choice, ImportError, has_scenes, import_choosing, is_mesh_file};
 use crate::scene::room::{Room, named_size, size};
 use crate::scene::{Body, Part, builtin_mesh, builtin_meshes};
 use glam::{DAffine3, DQuat, DVec3};
@@ -77,7 +77,7 @@ impl<'a> Bodies<'a> {
 
     /// A body's meshes, as its material, scale and rotation make them; shared with all that look alike.
     fn parts(&mut self, table: &BodyTable) -> Result<Vec<Part>, SceneError> {
-        let file_scene = table.file_scene.as_ref().map(|scene| scene.get_ref().clone());
+        let file_scene = table.file_scene.as_ref().map(|scene| scene.get_ref().to_string());
         let plain = Look {
             mesh: table.mesh.get_ref().clone(),
             file_scene,
@@ -151,7 +151,7 @@ impl<'a> Bodies<'a> {
             return Err(source.at(word, message));
         }
         let file = source.path.parent().unwrap_or(Path::new("")).join(name);
-        let choice = Choice { scene: scene.map(|scene| scene.get_ref().clone()), camera: None };
+        let choice = Choice { scene: scene.map(|scene| scene.get_ref().to_string()), camera: None };
         let imported = import_choosing(&file, &choice).map_err(|e| match (&e, scene) {
             (ImportError::Choice { .. }, Some(scene)) => source.at(scene, format!("file_scene: {e}")),
             _ => source.at(word, e),
@@ -168,7 +168,8 @@ impl<'a> Bodies<'a> {
             self.room.widen(imported.bytes);
         }
         let imported = imported.settled();
-        self.notes.extend(imported.notes);
+        // Whether it stays so is known when all is read.
+        self.notes.extend(imported.notes.into_iter().filter(|note| note != CLAY_NOTE));
         self.files.extend(imported.files);
         Ok(imported.parts)
     }

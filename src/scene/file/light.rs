@@ -4,7 +4,7 @@ use super::source::{Source, VelocityKeys, did_you_mean, velocity_keys};
 use super::tables::{GlossTable, LightTable, MaterialTable};
 use super::{SceneError, read_color};
 use crate::relativity::Motion;
-use crate::scene::{EmissionLaw, Gloss, Light, LightKind, Material, Mesh, Surface, read_plain};
+use crate::scene::{EmissionLaw, Gloss, Light, LightKind, Material, Mesh, Paint, Surface, read_plain};
 use crate::spectrum::{Beyond, Shape, Spectrum, Strength, Tabulated};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -25,8 +25,11 @@ pub(super) struct Finish {
 
 impl Finish {
     pub fn apply(&self, mesh: &mut Mesh) {
-        if let Some(color) = self.color {
-            mesh.repaint(color);
+        match self.color {
+            Some(color) => mesh.repaint(color),
+            // What shines or is lit needs no paint to show its shape by.
+            None if mesh.clay && self.surface.is_some() => mesh.repaint(Paint::CLAY),
+            None => {}
         }
         if mesh.materials.is_empty() {
             mesh.materials.push(Material::default());
@@ -163,6 +166,9 @@ fn read_law(source: &Source<'_>, place: &Spanned<Value>) -> Result<EmissionLaw, 
             let mut coefficients = [0.0; 2];
             for (to, value) in coefficients.iter_mut().zip(list) {
                 *to = choice.number("limb_darkening", value)?;
+                if to.abs() > 10.0 {
+                    return Err(choice.fault(format!("limb_darkening: {to:e} must lie between -10 and 10")));
+                }
             }
             Ok(EmissionLaw::LimbDarkening { coefficients })
         }
@@ -190,7 +196,7 @@ pub(super) fn read_material(
     table: &MaterialTable,
     files: &mut Vec<PathBuf>,
 ) -> Result<Finish, SceneError> {
-    let color = |place: &Option<_>| place.as_ref().map(|c| read_color(source, c)).transpose();
+    let color = |key: &str, place: &Option<_>| place.as_ref().map(|c| read_color(source, key, c)).transpose();
     let beyond = table.beyond.as_ref().map(|b| word(source, "beyond", b, &BEYOND)).transpose()?;
     let strength = match (&table.luminance, &table.radiance) {
         (Some(_), Some(radiance)) => {
@@ -219,11 +225,16 @@ pub(super) fn read_material(
     };
     const SURFACES: [(&str, Surface); 2] = [("luminous", Surface::Luminous), ("lit", Surface::Lit)];
     Ok(Finish {
-        color: color(&table.color)?,
-        emission: color(&table.emission)?,
+        color: color("color", &table.color)?,
+        emission: color("emission", &table.emission)?,
         spectrum,
         beyond,
-        surface: table.surface.as_ref().map(|s| word(source, "surface", s, &SURFACES)).transpose()?,
+        // What says how it shines does shine.
+        surface: match &table.surface {
+            Some(surface) => Some(word(source, "surface", surface, &SURFACES)?),
+            None => (strength.is_some() || table.spectrum.is_some() || table.law.is_some())
+                .then_some(Surface::Luminous),
+        },
         law: table.law.as_ref().map(|l| read_law(source, l)).transpose()?,
         gloss: table.gloss.as_ref().map(|g| read_gloss(source, g)).transpose()?,
     })
@@ -303,8 +314,11 @@ pub(super) fn read_light(
         }
     };
     if !(0.0..=1e12).contains(&strength) {
-        let place = table.strength.as_ref().or(table.power.as_ref());
-        let message = format!("{strength} must lie between 0 and 1e12");
+        let (key, place) = match &table.power {
+            Some(power) => ("power", Some(power)),
+            None => ("strength", table.strength.as_ref()),
+        };
+        let message = format!("{key} = {strength:e} must lie between 0 and 1e12");
         return Err(source.fault(place.map(|p| p.span().start), message));
     }
     let shape = table.spectrum.as_ref().map_or(Ok(Shape::White), |s| read_shape(source, s, files))?;
@@ -327,7 +341,7 @@ pub(super) fn read_light(
             Kind::Spot => LightKind::Spot { position: DVec3::ZERO, direction, cone },
             Kind::Ambient => LightKind::Ambient,
         },
-        color: table.color.as_ref().map_or(Ok([1.0; 3]), |c| read_color(source, c))?,
+        color: table.color.as_ref().map_or(Ok([1.0; 3]), |c| read_color(source, "color", c))?,
         spectrum,
         strength,
         motion: Motion {

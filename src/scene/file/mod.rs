@@ -9,12 +9,14 @@ mod tables;
 pub use source::SceneError;
 pub(super) use source::did_you_mean;
 
-use super::{Aim, Body, LensError, Projection, Scene, View, ViewError};
+use super::import::CLAY_NOTE;
+use super::{Aim, Body, LensError, Mesh, Paint, Projection, Scene, View, ViewError};
 use body::Bodies;
 use light::{read_light, read_material};
 use source::{Source, VelocityKeys, explain, velocity_keys};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
+use std::sync::Arc;
 use tables::{CameraTable, Color, SceneFile, Vector};
 use terrell_geodesic::TetradError;
 use toml::Spanned;
@@ -35,7 +37,7 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         finishes.insert(name.as_str(), read_material(&source, table, &mut files)?);
     }
     let read_light = |(index, table)| read_light(&source, index, table, &mut files);
-    let lights = file.light.iter().enumerate().map(read_light).collect::<Result<_, _>>()?;
+    let lights: Vec<_> = file.light.iter().enumerate().map(read_light).collect::<Result<_, _>>()?;
     let mut reader = Bodies::new(&source, &finishes, files);
     let mut bodies: Vec<Body> = Vec::new();
     for (index, table) in file.body.iter().enumerate() {
@@ -59,7 +61,23 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         None => View::default(),
     };
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let Bodies { files, notes, .. } = reader;
+    let Bodies { files, mut notes, .. } = reader;
+    let mut plains = HashMap::new();
+    for body in bodies.iter_mut().filter(|body| body.mesh.clay) {
+        if lights.is_empty() {
+            if !notes.iter().any(|note| note == CLAY_NOTE) {
+                notes.push(CLAY_NOTE.to_owned());
+            }
+        } else {
+            // Light shows its shape. What is shared stays so.
+            let plain = || {
+                let mut mesh = Mesh::clone(&body.mesh);
+                mesh.repaint(Paint::CLAY);
+                Arc::new(mesh)
+            };
+            body.mesh = plains.entry(Arc::as_ptr(&body.mesh)).or_insert_with(plain).clone();
+        }
+    }
     let mut scene = Scene { files, notes, lights, ..Scene::new(&name, bodies, view) };
     if let Some(table) = &file.animation {
         scene.animation = Some(animation::read_animation(&source, table, &scene)?);
@@ -149,15 +167,17 @@ pub(crate) fn parse_projection(word: &str) -> Result<Projection, String> {
     })
 }
 
-fn read_color(source: &Source<'_>, place: &Spanned<Color>) -> Result<[f32; 3], SceneError> {
+fn read_color(source: &Source<'_>, key: &str, place: &Spanned<Color>) -> Result<[f32; 3], SceneError> {
     match place.get_ref() {
         Color::Linear(c) if c.iter().all(|v| v.is_finite() && *v >= 0.0) => Ok(*c),
-        Color::Linear(_) => Err(source.at(place, "color must be three numbers, none of them negative")),
+        Color::Linear(_) => {
+            Err(source.at(place, format!("{key} must be three numbers, none of them negative")))
+        }
         Color::Hex(text) => {
             let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii());
             let value = digits.and_then(|d| u32::from_str_radix(d, 16).ok());
             let value = value
-                .ok_or_else(|| source.at(place, format!("color '{text}' is not of the form #rrggbb")))?;
+                .ok_or_else(|| source.at(place, format!("{key} '{text}' is not of the form #rrggbb")))?;
             Ok([16, 8, 0].map(|shift| crate::color::linear((value >> shift & 0xff) as u8)))
         }
     }

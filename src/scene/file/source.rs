@@ -172,6 +172,7 @@ pub(super) fn explain(message: &str, line: &str) -> String {
         return "bodies and lights are lists: write [[body]] and [[light]], with two brackets".to_owned();
     }
     let message = match message.split_once("untagged enum ") {
+        Some((_, "Name")) => "needs a name in quotes or a number",
         Some((_, "Scale")) => "needs one number or three",
         Some((_, "Color")) => "needs [r, g, b] or \"#rrggbb\"",
         _ => message,

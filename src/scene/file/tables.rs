@@ -44,7 +44,7 @@ pub(super) struct CameraTable {
 pub(super) struct BodyTable {
     pub name: Option<String>,
     pub mesh: Spanned<String>,
-    pub file_scene: Option<Spanned<String>>,
+    pub file_scene: Option<Spanned<Name>>,
     pub time: Option<Spanned<f64>>,
     pub position: Option<Vector>,
     pub velocity: Option<Vector>,
@@ -64,6 +64,23 @@ pub(super) struct BodyTable {
 pub(super) struct RotationTable {
     pub axis: Vector,
     pub angle_deg: Spanned<f64>,
+}
+
+/// A name, or a number.
+#[derive(Clone, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Name {
+    Text(String),
+    Number(u32),
+}
+
+impl std::fmt::Display for Name {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Text(text) => f.write_str(text),
+            Self::Number(number) => number.fmt(f),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Deserialize)]

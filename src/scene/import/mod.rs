@@ -4,7 +4,7 @@ mod gltf;
 mod obj;
 mod picture;
 
-use super::{Body, Clip, Light, Material, Mesh, MeshError, View};
+use super::{Body, Clip, Light, Material, Mesh, MeshError, Paint, View};
 use crate::relativity::Motion;
 use glam::{DAffine3, DVec3};
 use std::cell::RefCell;
@@ -214,14 +214,25 @@ pub fn read_plain(path: &Path) -> std::io::Result<Vec<u8>> {
     std::fs::read(path)
 }
 
-fn checked(imported: Imported, path: &Path) -> Result<Imported, ImportError> {
+fn checked(mut imported: Imported, path: &Path) -> Result<Imported, ImportError> {
     let fault = |source| ImportError::Mesh { path: path.to_owned(), source };
     if imported.parts.is_empty() {
         return Err(fault(MeshError::Empty));
     }
     imported.parts.iter().try_for_each(|part| part.mesh.check()).map_err(fault)?;
+    if imported.parts.iter().any(|part| part.mesh.clay) {
+        if imported.lights.is_empty() {
+            imported.notes.push(CLAY_NOTE.to_owned());
+        } else {
+            // Light shows its shape.
+            imported.parts.iter_mut().for_each(|part| Arc::make_mut(&mut part.mesh).repaint(Paint::CLAY));
+        }
+    }
     Ok(imported)
 }
+
+/// Said of what has no colours.
+pub(super) const CLAY_NOTE: &str = "the mesh has no colours; painted in clay by the direction its faces look";
 
 /// Reads an OBJ file held in memory, its material library beside it.
 ///
@@ -246,8 +257,18 @@ fn note_once(notes: &mut Vec<String>, note: &str) {
 /// The material of that index in plain colours, for what has no texture coordinates: its index.
 fn without_textures(materials: &mut Vec<Material>, index: usize) -> usize {
     let plain = Material { base_texture: None, emission_texture: None, ..materials[index].clone() };
-    materials.iter().position(|m| *m == plain).unwrap_or_else(|| {
-        materials.push(plain);
+    place_of(materials, plain)
+}
+
+/// The material of that index where colours at vertices stand for its own: its index.
+fn under_paint(materials: &mut Vec<Material>, index: usize) -> usize {
+    let white = Material { base_color: [1.0; 3], ..materials[index].clone() };
+    place_of(materials, white)
+}
+
+fn place_of(materials: &mut Vec<Material>, material: Material) -> usize {
+    materials.iter().position(|m| *m == material).unwrap_or_else(|| {
+        materials.push(material);
         materials.len() - 1
     })
 }

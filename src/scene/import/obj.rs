@@ -1,5 +1,5 @@
 use super::picture::decode;
-use super::{ImportError, Imported, Part, ReadFile, beside, note_once, without_textures};
+use super::{ImportError, Imported, Part, ReadFile, beside, note_once, under_paint, without_textures};
 use crate::scene::{Material, Mesh, Paint, Picture, Texture, Wrap};
 use glam::{DAffine2, DVec2, DVec3};
 use std::cell::{Cell, RefCell};
@@ -104,9 +104,13 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
         }
         let mut index = material.unwrap_or(plain);
         if painted {
-            // Vertex colours stand for the material's own.
-            index = white;
-        } else if part.uv.is_empty() && made[index].is_textured() {
+            // Vertex colours stand for the material's own; a texture stays.
+            index = match material {
+                Some(id) => under_paint(&mut made, id),
+                None => white,
+            };
+        }
+        if part.uv.is_empty() && made[index].is_textured() {
             library.note("textures without texture coordinates are left out");
             index = without_textures(&mut made, index);
         }
@@ -128,7 +132,6 @@ pub(super) fn parse(bytes: &[u8], path: &Path, read: ReadFile<'_>) -> Result<Imp
     if !colored {
         (mesh.materials, mesh.material) = (Vec::new(), Vec::new());
         mesh.paint_as_clay();
-        notes.push("the mesh has no colours; painted in clay by the direction its faces look".into());
     }
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let (parts, bytes) = (vec![Part::still(name, mesh)], read_bytes.get());
@@ -156,7 +159,10 @@ fn triangulated(indices: &[u32], corners: &[u32], mesh: &Mesh) -> (Vec<[u32; 3]>
         match *polygon {
             [a, b, c] => out.push([a, b, c]),
             [a, _, _, ..] => match concave(polygon, mesh) {
-                None => out.extend(polygon[1..].windows(2).map(|w| [a, w[0], w[1]])),
+                None => {
+                    crossed |= is_balanced(polygon, mesh);
+                    out.extend(polygon[1..].windows(2).map(|w| [a, w[0], w[1]]));
+                }
                 Some(flat) => {
                     let mut ears: Vec<u32> = Vec::new();
                     earcut::Earcut::new().earcut(flat.iter().map(|p| p.to_array()), &[], &mut ears);
@@ -198,6 +204,15 @@ fn concave(polygon: &[u32], mesh: &Mesh) -> Option<Vec<DVec2>> {
         .sum();
     let is_concave = (0..flat.len()).any(turns) || around > 7.0;
     (is_concave && !(flat.len() > MOST_TANGLED && is_tangled(&flat, around))).then_some(flat)
+}
+
+/// Whether a polygon goes round as much one way as the other, though its corners are in no line: a bow tie.
+fn is_balanced(polygon: &[u32], mesh: &Mesh) -> bool {
+    let at = |i: usize| mesh.vertex(polygon[i]) - mesh.vertex(polygon[0]);
+    let parts = (1..polygon.len() - 1).map(|i| at(i).cross(at(i + 1)));
+    let (whole, each) = parts.fold((DVec3::ZERO, 0.0), |(sum, each), p| (sum + p, each + p.length()));
+    let size = (1..polygon.len()).map(|i| at(i).length_squared()).fold(0.0, f64::max);
+    each > 1e-9 * size && whole.length() < 1e-9 * each
 }
 
 /// Whether triangles cover another area than their outline goes round: it crosses itself.

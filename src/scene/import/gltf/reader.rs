@@ -64,6 +64,11 @@ impl<'a> Reader<'a> {
     ) -> Result<Self, ImportError> {
         let fault = |message| ImportError::Contents { path: path.to_owned(), line: None, message };
         let mut notes = Vec::new();
+        let unknown: Vec<&str> =
+            file.extensions_used().filter(|e| !super::KNOWN_EXTENSIONS.contains(e)).collect();
+        if !unknown.is_empty() {
+            notes.push(format!("left out, as it is not known here: {}", unknown.join(", ")));
+        }
         let surfaces = Surfaces::read(file, &buffers, path, read, &mut notes);
         let animated = Animated::read(file, &buffers, &mut room, &mut notes).map_err(fault)?;
         let generator = file.document.as_json().asset.generator.as_deref().unwrap_or_default();
@@ -351,6 +356,12 @@ impl<'a> Reader<'a> {
         let name = light.name().map_or_else(|| named(node), str::to_owned);
         self.room.take(named_size(&name))?;
         let (strength, color) = (f64::from(light.intensity()), light.color());
+        if light.range().is_some() {
+            self.note("lights reach as far as they do: their range is left out");
+        }
+        if !place.joints.is_empty() {
+            self.note("a light's animation is not followed: it stays as at its beginning");
+        }
         let possible = |v: f64| (0.0..=1e12).contains(&v);
         if !possible(strength) || !color.iter().all(|v| possible((*v).into())) {
             return Err(format!(
@@ -390,9 +401,6 @@ impl<'a> Reader<'a> {
             if !self.colored {
                 mesh.paint_as_clay();
             }
-        }
-        if !self.colored {
-            self.note("the mesh has no colours; painted in clay by the direction its faces look");
         }
         Imported {
             parts: self.parts,

@@ -82,6 +82,9 @@ impl Surfaces {
             };
             let base_texture = texture(base.base_color_texture());
             let emission_texture = texture(material.emissive_texture());
+            if material.normal_texture().is_some() || material.occlusion_texture().is_some() {
+                note_once(notes, "textures of normals and of occlusion are left out");
+            }
             if base.metallic_roughness_texture().is_some() {
                 note_once(notes, "textures of metal and roughness are left out");
             }
