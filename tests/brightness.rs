@@ -357,3 +357,44 @@ fn exported_colours_are_those_seen() {
     assert_eq!(told["exposure_ev"], 1.0);
     assert_eq!(json(&["transform", "cube", "-o", "cube.glb"], here)["color"], "geometry");
 }
+
+/// What has no colours is lit as plain clay, and painted as such only where there is no light to show its shape; with a
+/// spectrum it shines alike on all sides.
+#[test]
+fn clay_is_paint_only_in_the_dark() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("m.obj"), "v -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nf 1 2 3 4\n").unwrap();
+    let body = "[[body]]\nmesh = \"m.obj\"\nposition = [0, 5, 0]\n";
+    let seen = |text: String| {
+        std::fs::write(here.join("a.toml"), text).unwrap();
+        let line = good(&["render", "a.toml", "-o", "a.exr", SMALL], here);
+        let film = read_exr(&here.join("a.exr"));
+        (film["G"][24 * 64 + 32], line.contains("painted in clay"))
+    };
+    assert!(seen(body.to_owned()).1);
+    let sun = "[[light]]\nkind = \"distant\"\ntowards = [0, 1, 0]\n";
+    let (bright, noted) = seen(format!("{body}{sun}"));
+    assert!((bright - 0.8).abs() < 1e-4 && !noted, "{bright} {noted}");
+    let (bright, noted) =
+        seen(format!("[material.m]\nspectrum = \"flat\"\ncolor = [1, 1, 1]\n{body}material = \"m\"\n"));
+    assert!(bright > 0.9 && !noted, "{bright} {noted}");
+    // Its own light is not put out by others.
+    let glow = "[material.m]\ncolor = [1, 1, 1]\nluminance = 5\n";
+    let (bright, _) = seen(format!("{glow}{body}material = \"m\"\n{sun}"));
+    assert!((bright - 5.0).abs() < 1e-3, "{bright}");
+}
+
+/// Over all wavelengths light is as strong as it is said to be, seen or not.
+#[test]
+fn bolometric_counts_what_is_not_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    for spectrum in ["{ line_nm = 1000 }", "{ blackbody_k = 300 }", "{ line_nm = 589 }"] {
+        let text = format!("[material.m]\ncolor = [1, 1, 1]\nspectrum = {spectrum}\nradiance = 2\n{CUBE}");
+        std::fs::write(here.join("a.toml"), text).unwrap();
+        good(&["render", "a.toml", "-o", "a.exr", SMALL, "--color", "bolometric"], here);
+        let film = read_exr(&here.join("a.exr"));
+        assert!((film["R"][24 * 64 + 32] - 2.0).abs() < 1e-5, "{spectrum}");
+    }
+}

@@ -15,7 +15,9 @@ use terrell::scene::{
     Aim, Body, Colors, EmissionLaw, Gloss, Light, LightKind, Material, Mesh, Paint, Scene, Surface, View,
     shapes,
 };
-use terrell::spectrum::{Beyond, Shape, Spectrum, Strength, XYZ_FROM_RGB, luminance, xyz_of_black_body};
+use terrell::spectrum::{
+    Beyond, Response, Shape, Spectrum, Strength, XYZ_FROM_RGB, luminance, xyz_of_black_body,
+};
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
@@ -180,6 +182,100 @@ fn ambient_light_is_a_bath() {
         let flux = 4.0 / 3.0 * gamma * gamma * beta * 4.0;
         let got = f64::from(ahead - behind);
         assert!((got / flux - 1.0).abs() < 1e-4, "{beta}: {got} {flux}");
+    }
+}
+
+/// A body at rest in a bath of one line that moves, on the side it comes to and beside: summed over directions here.
+#[test]
+fn a_bath_of_one_line_is_no_rings() {
+    let observer = Tetrad::of_world(Event::origin());
+    for (u, kelvin) in [(0.5, None), (2.0, None), (10.0, None), (300.0, Some(2.725))] {
+        let shape = match kelvin {
+            Some(kelvin) => Shape::BlackBody { kelvin },
+            None => Shape::Line { centre_nm: 589.0, width_nm: 5.0 },
+        };
+        let spectrum = Spectrum { strength: Strength::Radiance(1.0), ..Spectrum::of(shape) };
+        let celerity = Celerity::new(DVec3::X * -u).unwrap();
+        let motion = Motion { celerity, origin: Event::origin() };
+        let bath = Light { spectrum: spectrum.clone(), ..light(LightKind::Ambient, motion) };
+        let body = Body::new("b", chip(Material::default()), Motion::at_rest(DVec3::Y * 3.0));
+        let scene = Scene { lights: vec![bath], ..Scene::new("s", vec![body], View::default()) };
+        let shading = Shading::new(&scene, [&observer], Coloring::Spectral).unwrap();
+        let response = Response::new(&spectrum, [1.0; 3], Beyond::Grey).unwrap();
+        let gamma = f64::hypot(1.0, u);
+        let mut peak = 0f64;
+        for cos_psi in [1.0f64, 0.7, 0.3, 0.05, -0.3] {
+            let normal = DVec3::new(cos_psi, (1.0 - cos_psi * cos_psi).sqrt(), 0.0);
+            let point = || Point::new(-normal, normal, normal);
+            let seen = luminance(shading.seen_by(&observer).radiance(0, 0, 1.0, || WHITE, point));
+            // By ln D, in rings around the motion: μ = (γ − 1/D)/u, and azimuths.
+            let (n, m, w) = (4000, 400, f64::asinh(u));
+            let mut sum = 0.0;
+            for i in 0..n {
+                let d = (-w + 2.0 * w * (f64::from(i) + 0.5) / f64::from(n)).exp();
+                let mu = (gamma - 1.0 / d) / u;
+                let across = (1.0 - mu * mu).max(0.0).sqrt();
+                let around: f64 = (0..m)
+                    .map(|j| {
+                        let phi = std::f64::consts::TAU * (f64::from(j) + 0.5) / f64::from(m);
+                        (mu * normal.x + across * normal.y * phi.cos()).max(0.0)
+                    })
+                    .sum();
+                let matrix = response.matrix(d, 1.0);
+                let rgb = [0, 1, 2].map(|k| matrix.iter().map(|c| c[k] as f32).sum());
+                let share = around * std::f64::consts::TAU / f64::from(m) * 2.0 * w / f64::from(n) / (u * d);
+                sum += f64::from(luminance(rgb)) * share / std::f64::consts::PI;
+            }
+            peak = peak.max(sum);
+            // Of the peak: rows by angle are straight lines, and rings finer than 1/100 in ln D.
+            assert!((f64::from(seen) - sum).abs() < 4e-3 * peak, "{u} {cos_psi}: {seen} {sum} of {peak}");
+            assert!(seen >= -1e-4 * peak as f32, "{u} {cos_psi}: {seen}");
+        }
+    }
+}
+
+/// A lamp of one line that passes: what is seen of a white and of a green surface is what the exact sums say.
+#[test]
+fn a_line_of_a_lamp_in_motion_is_exact() {
+    let observer = Tetrad::of_world(Event::origin());
+    let spectrum = Spectrum::of(Shape::Line { centre_nm: 589.0, width_nm: 2.0 });
+    let celerity = Celerity::new(DVec3::X * 0.5).unwrap();
+    let motion = Motion { celerity, origin: Event::new(0.0, 0.0, 3.0, 1.0) };
+    let lamp =
+        Light { spectrum: spectrum.clone(), ..light(LightKind::Point { position: DVec3::ZERO }, motion) };
+    let body = Body::new("b", chip(Material::default()), Motion::at_rest(DVec3::Y * 3.0));
+    let scene = Scene { lights: vec![lamp], ..Scene::new("s", vec![body], View::default()) };
+    let shading = Shading::new(&scene, [&observer], Coloring::Spectral).unwrap();
+    let bare = Shading::new(&scene, [&observer], Coloring::Geometry).unwrap();
+    let flat = Shading::new(&scene, [&observer], Coloring::Flat).unwrap();
+    let response = Response::new(&spectrum, [1.0; 3], Beyond::Grey).unwrap();
+    for base in [[1.0f32; 3], [0.1, 0.8, 0.2]] {
+        let colors = Colors { base, ..WHITE };
+        let [mut worst, mut peak] = [0f64; 2];
+        for i in 0..200 {
+            let at = DVec3::new(0.1 * f64::from(i) - 10.0, 3.0, 0.0);
+            let point = || Point::new(at, DVec3::new(0.0, -0.3, 1.0), DVec3::new(0.0, -0.3, 1.0));
+            let seen = |shading: &Shading| shading.seen_by(&observer).radiance(0, 0, 1.0, || colors, point);
+            // Geometry is albedo E, flat that times D of the lamp.
+            let (dark, shifted) = (seen(&bare)[1], seen(&flat)[1]);
+            if dark <= 0.0 {
+                continue;
+            }
+            let d = f64::from(shifted / dark);
+            let matrix = response.matrix(d, 1.0);
+            let unit = response.matrix(1.0, 1.0);
+            let white: f64 = unit.iter().map(|c| c[1]).sum::<f64>().max(0.0);
+            let irradiance = f64::from(dark) / white / f64::from(base[1]);
+            let got = seen(&shading);
+            for k in 0..3 {
+                let exact: f64 =
+                    (0..3).map(|i| matrix[i][k] * f64::from(base[i])).sum::<f64>() * irradiance / (d * d);
+                worst = worst.max((exact - f64::from(got[k])).abs());
+                peak = peak.max(exact.abs());
+            }
+        }
+        // Rows a 64th of an e-fold apart, and reflectances that change over a tenth of one.
+        assert!(worst < 5e-3 * peak && peak > 0.0, "{base:?}: {worst:e} of {peak:e}");
     }
 }
 

@@ -184,6 +184,26 @@ fn tables_keep_their_error() {
     }
 }
 
+/// Features finer than a nanometre count for what they are, wherever they lie.
+#[test]
+fn fine_tables_have_the_luminance_they_are_given() {
+    for centre in [589.0, 588.5, 588.77] {
+        let csv = format!("{},0\n{centre},1\n{},0\n", centre - 0.05, centre + 0.05);
+        let table = Tabulated::parse(&csv, "line").unwrap();
+        let spectrum = Spectrum::of(Shape::Tabulated(Arc::new(table)));
+        let xyz = *XYZ_FROM_RGB * white(&response(&spectrum).matrix(1.0, 1.0));
+        assert!((xyz.y - 1.0).abs() < 1e-9, "{centre}: {xyz}");
+        // The same as a narrow line of that luminance.
+        let strength = Strength::Luminance(1.0);
+        let shape = Shape::Line { centre_nm: centre, width_nm: 0.05 };
+        let line = Spectrum { shape, strength, beyond: Beyond::Grey };
+        for doppler in [0.93, 1.0, 1.08] {
+            let [a, b] = [&spectrum, &line].map(|s| white(&response(s).matrix(1.0, doppler)));
+            assert!((a - b).length() < 1e-4 * b.length(), "{centre} {doppler}: {a} {b}");
+        }
+    }
+}
+
 fn greatest(matrix: &Matrix) -> f64 {
     matrix.iter().flatten().fold(0.0, |a: f64, v| a.max(v.abs()))
 }

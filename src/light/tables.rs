@@ -112,8 +112,8 @@ impl Tables {
 }
 
 /// Rows of tables by the lamp's shift, for every e-fold: what surfaces reflect changes over a tenth of that. Sums of many do
-/// with half.
-const ROWS: f64 = 32.0;
+/// with a quarter.
+const ROWS: f64 = 64.0;
 
 /// Steps of cos ψ.
 const ANGLES: usize = 128;
@@ -126,7 +126,7 @@ fn bath_table(bath: &Bath, range: f64, matrix: impl Fn(f64, f64) -> Matrix + Syn
     }
     // Finer than the eye tells wavelengths apart, so that lines are no rings.
     let rings = bath.rings(((2.0 * bath.rapidity() / 0.01) as usize).clamp(64, 2000) & !1);
-    let shifted = RowTable::by_lamp(bath.rapidity(), range, 0.5 * ROWS, &matrix);
+    let shifted = RowTable::by_lamp(bath.rapidity(), range, 0.25 * ROWS, &matrix);
     let cosine = |i: usize| 2.0 * i as f64 / ANGLES as f64 - 1.0;
     let shares: Vec<Vec<f64>> =
         rings.iter().map(|ring| (0..=ANGLES).map(|i| ring.share(cosine(i))).collect()).collect();

@@ -223,7 +223,7 @@ enum Between {
 const MOST_IN_ROWS: usize = 1024;
 
 /// The most rows by lamps there are.
-const MOST_ROWS: f64 = 160.0;
+const MOST_ROWS: f64 = 256.0;
 
 /// Light shifted farther to the red than this, by ln D, does not decide how fine tables are.
 const DARKEST: f64 = -2.5;
