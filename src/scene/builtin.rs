@@ -34,7 +34,7 @@ const SCENES: [Builtin; 9] = [
     },
     Builtin {
         name: "gate_back",
-        about: "the same gate 340 m behind the camera, looking backward: it is seen at 24 m, and flat",
+        about: "the same gate 340 m behind the camera, looking backward: it is seen at 24 m, and flat (--color geometry)",
         toml: include_str!("../../assets/gate_back.toml"),
     },
     Builtin {
@@ -49,12 +49,12 @@ const SCENES: [Builtin; 9] = [
     },
     Builtin {
         name: "sphere",
-        about: "chequered spheres at rest, 0.5c, 0.9c and 0.99c: all outlines are circles, all are turned",
+        about: "chequered spheres at rest, 0.5c, 0.9c and 0.99c: all outlines are circles, all are turned (--color geometry)",
         toml: include_str!("../../assets/sphere.toml"),
     },
     Builtin {
         name: "street",
-        about: "a street with trams and cars at 0, 0.5c, 0.8c and 0.9c, in both directions",
+        about: "a street with trams and cars at 0, 0.5c, 0.8c and 0.9c, in both directions (--color geometry)",
         toml: include_str!("../../assets/street.toml"),
     },
     Builtin {
@@ -64,7 +64,7 @@ const SCENES: [Builtin; 9] = [
     },
     Builtin {
         name: "train",
-        about: "a train passing at 0.9c between the piers and the wall of a station: what hides what",
+        about: "a train passing at 0.9c between the piers and the wall of a station: what hides what (--color geometry)",
         toml: include_str!("../../assets/train.toml"),
     },
 ];

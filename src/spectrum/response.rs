@@ -20,6 +20,9 @@ pub struct Response<'a> {
     stride: usize,
 }
 
+/// Nanometres between those that are looked at.
+const COARSE: usize = 3;
+
 impl<'a> Response<'a> {
     /// Of a source behind a filter of a colour (1, 1, 1 for none), and surfaces of which `beyond` is assumed.
     ///
@@ -29,11 +32,11 @@ impl<'a> Response<'a> {
         Ok(Self { spectrum, color: color.map(f64::from), beyond, scale: spectrum.scale()?, stride: 1 })
     }
 
-    /// The same by sums over every fifth nanometre where the spectrum is smooth, good to 10⁻⁴: for tables of tables.
+    /// The same by sums over every third nanometre where the spectrum is smooth, good to 10⁻⁴: for tables of tables.
     #[must_use]
     pub fn coarse(self) -> Self {
         let smooth = !matches!(self.spectrum.shape, Shape::Line { .. } | Shape::Tabulated(_));
-        Self { stride: if smooth { 5 } else { 1 }, ..self }
+        Self { stride: if smooth { COARSE } else { 1 }, ..self }
     }
 
     /// Of surfaces that shine with the spectrum themselves.
