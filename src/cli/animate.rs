@@ -159,10 +159,9 @@ impl Animate {
         scene.notes.extend(summary::light_notes(&scene, options.coloring));
         let animation = self.animation(&scene)?;
         let cameras = animation.cameras(&scene)?;
-        let panel = |scene: Scene, cameras: Vec<Camera>| -> Result<Panel, Fault> {
+        let panel = |mut scene: Scene, cameras: Vec<Camera>| -> Result<Panel, Fault> {
             let overlay = self.drawing.overlay(&scene)?;
             let shading = options.shading(&scene, &cameras)?;
-            let mut scene = scene;
             scene.notes.extend(summary::table_notes(&shading));
             let (tone, (exposure, each)) = (
                 self.look.develop.tone(options.coloring),

@@ -109,7 +109,9 @@ impl Irradiance {
         let place = (0.5 * (cos_psi + 1.0) * STEPS as f64).max(0.0).min(STEPS as f64);
         let low = (place as usize).clamp(1, STEPS - 2);
         let weights = cubic(place - low as f64);
-        [0, 1].map(|k| (0..4).map(|j| weights[j] * self.0[low - 1 + j][k]).sum())
+        let value = |k: usize| (0..4).map(|j| weights[j] * self.0[low - 1 + j][k]).sum::<f64>();
+        // Across the edge of what is lit a cubic swings.
+        [0, 1].map(|k| value(k).max(0.0))
     }
 }
 
