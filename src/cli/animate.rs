@@ -163,11 +163,10 @@ impl Animate {
             let overlay = self.drawing.overlay(&scene)?;
             let shading = options.shading(&scene, &cameras)?;
             scene.notes.extend(summary::table_notes(&shading));
-            let (tone, (exposure, each)) = (
-                self.look.develop.tone(options.coloring),
-                self.look.develop.exposure(options.coloring, &scene),
-            );
-            let development = match each {
+            let develop = &self.look.develop;
+            let tone = develop.tone(options.coloring);
+            let exposure = develop.exposure(options.coloring, &scene);
+            let development = match develop.is_each() {
                 // Every frame's own.
                 true => Development { ev: 0.0, tone },
                 false => exposure.of_film(tone, &scene, &cameras, options)?,

@@ -108,12 +108,12 @@ enum ToneFlag {
 }
 
 impl DevelopFlags {
-    /// How the exposure is chosen, and whether for every picture by itself.
-    pub fn exposure(&self, coloring: Coloring, scene: &Scene) -> (Exposure, bool) {
+    /// How the exposure is chosen.
+    pub fn exposure(&self, coloring: Coloring, scene: &Scene) -> Exposure {
         match self.exposure {
-            Some(ExposureFlag::Chosen(exposure)) => (exposure, false),
-            Some(ExposureFlag::Each) => (Exposure::Auto, true),
-            None => (Exposure::usual(coloring, scene), false),
+            Some(ExposureFlag::Chosen(exposure)) => exposure,
+            Some(ExposureFlag::Each) => Exposure::Auto,
+            None => Exposure::usual(coloring, scene),
         }
     }
 

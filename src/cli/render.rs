@@ -73,7 +73,7 @@ impl Render {
         let report =
             render_again(&scene, &camera, &options, &shading, &mut film, |step| progress.show(&scene, step))?;
         progress.clear();
-        let (exposure, _) = self.look.develop.exposure(coloring, &scene);
+        let exposure = self.look.develop.exposure(coloring, &scene);
         let tone = self.look.develop.tone(coloring);
         let development = exposure.of_picture(tone, &scene, &camera, &options, &film)?;
         let before_writing = start.elapsed();
