@@ -1,30 +1,9 @@
 //! `terrell animate` as its users meet it.
 
-use assert_cmd::Command;
-use std::path::{Path, PathBuf};
+#[path = "common/program.rs"]
+mod program;
 
-fn terrell(words: &[&str], folder: &Path) -> std::process::Output {
-    let mut command = Command::cargo_bin("terrell").unwrap();
-    command.args(words).current_dir(folder).output().unwrap()
-}
-
-fn good(words: &[&str], folder: &Path) -> String {
-    let out = terrell(words, folder);
-    assert!(out.status.success(), "{words:?}: {}", String::from_utf8_lossy(&out.stderr));
-    String::from_utf8(out.stdout).unwrap()
-}
-
-fn bad(words: &[&str], folder: &Path) -> String {
-    let out = terrell(words, folder);
-    let message = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert_eq!(out.status.code(), Some(2), "{words:?}: {message}");
-    assert!(message.starts_with("error: "), "{message}");
-    message
-}
-
-fn pixels(path: PathBuf) -> image::RgbImage {
-    image::open(path).unwrap().into_rgb8()
-}
+use program::{bad, good, pixels, terrell};
 
 const SMALL: [&str; 4] = ["--size", "64x48", "--frames", "4"];
 

@@ -1,35 +1,16 @@
 //! Colours, lights and exposures of the command, as its users meet them.
 
 mod common;
+#[path = "common/program.rs"]
+mod program;
 
-use assert_cmd::Command;
 use common::read_exr;
+use program::{bad, good, pixels};
 use serde_json::Value;
 use std::path::Path;
 
-fn terrell(words: &[&str], folder: &Path) -> std::process::Output {
-    Command::cargo_bin("terrell").unwrap().args(words).current_dir(folder).output().unwrap()
-}
-
-fn good(words: &[&str], folder: &Path) -> String {
-    let out = terrell(words, folder);
-    assert!(out.status.success(), "{words:?}: {}", String::from_utf8_lossy(&out.stderr));
-    String::from_utf8(out.stdout).unwrap()
-}
-
-fn bad(words: &[&str], folder: &Path) -> String {
-    let out = terrell(words, folder);
-    let message = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert_eq!(out.status.code(), Some(2), "{words:?}: {message}");
-    message
-}
-
 fn json(words: &[&str], folder: &Path) -> Value {
     serde_json::from_str(&good(&[words, &["--json", "-", "-q"]].concat(), folder)).unwrap()
-}
-
-fn pixels(path: std::path::PathBuf) -> image::RgbImage {
-    image::open(path).unwrap().into_rgb8()
 }
 
 const SMALL: &str = "--size=64x48";
