@@ -70,11 +70,11 @@ impl Exposure {
             Options { coloring, samples: 1, tolerance: options.tolerance.max(1.0), ..options.clone() };
         let count = cameras.len().min(METERED);
         let place = |i: usize| if count > 1 { i * (cameras.len() - 1) / (count - 1) } else { 0 };
-        let shading = options.shading(scene, cameras)?;
+        let prepared = options.prepare(scene, cameras)?;
         let (mut film, mut light) = (Film::new(0, 0), Vec::new());
         for camera in (0..count).map(|i| &cameras[place(i)]) {
             let camera = Camera { lens: camera.lens.within(ACROSS), ..*camera };
-            render_again(scene, &camera, &options, &shading, &mut film, |_| ())?;
+            render_again(scene, &camera, &options, &prepared, &mut film, |_| ())?;
             light.extend(film.color.iter().copied());
         }
         Ok(Development { ev: tone.metered(light), tone })

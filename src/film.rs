@@ -1,5 +1,7 @@
 //! What every method fills and every output reads.
 
+use rayon::prelude::*;
+
 /// Linear light and geometry, pixel by pixel, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
@@ -17,6 +19,47 @@ pub struct Film {
     pub body: Vec<i32>,
     /// Index of the triangle in the body's file; [`NOTHING`] where nothing is seen.
     pub face: Vec<i32>,
+}
+
+/// Where in a pixel its samples lie, in pixels from its upper left corner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Samples(Vec<[f64; 2]>);
+
+impl Samples {
+    /// The most samples a pixel can have.
+    pub const MOST: u32 = 1024;
+
+    /// `count` samples a pixel, spread evenly (the R₂ sequence of M. Roberts, 2018, shifted so that one
+    /// sample is the pixel's centre).
+    pub fn new(count: u32) -> Self {
+        // Reciprocals of the plastic number and its square.
+        const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
+        Self(
+            (0..count.clamp(1, Self::MOST)).map(|i| STEP.map(|s| (0.5 + s * f64::from(i)).fract())).collect(),
+        )
+    }
+
+    /// They themselves; the first is the pixel's centre.
+    pub fn offsets(&self) -> &[[f64; 2]] {
+        &self.0
+    }
+
+    /// Least and greatest offset, x and y.
+    pub(crate) fn range(&self) -> [[f64; 2]; 2] {
+        let of = |pick: fn(f64, f64) -> f64| {
+            self.0.iter().copied().reduce(|a, b| [pick(a[0], b[0]), pick(a[1], b[1])]).unwrap_or([0.5; 2])
+        };
+        [of(f64::min), of(f64::max)]
+    }
+}
+
+/// Some rows of a film, to be filled.
+pub(crate) struct Rows<'a> {
+    pub color: &'a mut [[f32; 3]],
+    pub distance: &'a mut [f32],
+    pub doppler: &'a mut [f32],
+    pub body: &'a mut [i32],
+    pub face: &'a mut [i32],
 }
 
 /// Body and face of a pixel where nothing is seen.
@@ -51,6 +94,18 @@ impl Film {
             indices.clear();
             indices.resize(pixels, NOTHING);
         }
+    }
+
+    /// The film in bands of so many rows, to be filled by all threads.
+    pub(crate) fn bands(&mut self, rows: u32) -> impl IndexedParallelIterator<Item = Rows<'_>> {
+        let pixels = (self.width as usize * rows as usize).max(1);
+        self.color
+            .par_chunks_mut(pixels)
+            .zip(self.distance.par_chunks_mut(pixels))
+            .zip(self.doppler.par_chunks_mut(pixels))
+            .zip(self.body.par_chunks_mut(pixels))
+            .zip(self.face.par_chunks_mut(pixels))
+            .map(|((((color, distance), doppler), body), face)| Rows { color, distance, doppler, body, face })
     }
 
     /// How many pixels see something.

@@ -56,12 +56,14 @@ pub mod exposure;
 pub mod film;
 pub mod light;
 pub mod picture;
+pub mod plan;
 pub mod raster;
 pub mod relativity;
 pub mod render;
 pub mod scene;
 pub mod spectrum;
 pub mod tone;
+pub mod trace;
 pub mod transform;
 
 pub use terrell_geodesic as geodesic;

@@ -2,17 +2,21 @@
 
 use crate::apparent::{ApparentMesh, Field, Subdivision, TooManyPieces};
 use crate::color::Coloring;
-use crate::film::Film;
+use crate::film::{Film, Samples};
 use crate::light::{DopplerAt, Shading, ShadingError};
-use crate::raster::{Drawable, Samples, TooManyToPaint, paint, shade_again};
+use crate::plan::Method;
+use crate::raster::{Drawable, TooManyToPaint, paint, shade_again};
 use crate::relativity::ApparentMap;
 use crate::scene::{Camera, Mesh, Scene};
+use crate::trace::{Count, Tracer};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How to draw.
 #[derive(Clone, Debug)]
 pub struct Options {
+    /// How what a pixel sees is found.
+    pub method: Method,
     /// Largest distance in pixels between a drawn edge and its exact image; usually ¼. Time and memory grow
     /// as 1/tolerance for large faces.
     pub tolerance: f64,
@@ -56,6 +60,7 @@ impl Default for Options {
     fn default() -> Self {
         let Subdivision { tolerance, most } = Subdivision::default();
         Self {
+            method: Method::default(),
             tolerance,
             most_pieces: most,
             samples: 1,
@@ -67,18 +72,29 @@ impl Default for Options {
 }
 
 impl Options {
-    /// How the surfaces of a scene shine and are lit as these cameras see it: to be made once for all of them.
+    /// What is the same for all of these cameras' pictures of a scene: to be made once.
     ///
     /// # Errors
     /// If a spectrum cannot be.
-    pub fn shading<'a>(
+    pub fn prepare<'a>(
         &self,
         scene: &Scene,
         cameras: impl IntoIterator<Item = &'a Camera>,
-    ) -> Result<Shading, ShadingError> {
+    ) -> Result<Prepared, ShadingError> {
         let observers = cameras.into_iter().map(|c| &c.observer);
-        Ok(Shading::new(scene, observers, self.coloring)?.with_doppler_at(self.doppler_at))
+        let shading = Shading::new(scene, observers, self.coloring)?.with_doppler_at(self.doppler_at);
+        let tracer = (self.method == Method::Trace).then(|| Tracer::new(scene));
+        Ok(Prepared { shading, tracer })
     }
+}
+
+/// What is the same for all pictures of a scene.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// How its surfaces shine and are lit.
+    pub shading: Shading,
+    /// Its meshes as rays are traced through them, if they are.
+    tracer: Option<Tracer>,
 }
 
 /// What was done and what it took.
@@ -92,6 +108,8 @@ pub struct Report {
     pub subdivision: Duration,
     /// Time for drawing.
     pub shading: Duration,
+    /// Rays, where they were traced.
+    pub rays: Option<Count>,
 }
 
 /// A step of [`render`], for showing progress.
@@ -103,8 +121,8 @@ pub enum Step {
     Drawing,
 }
 
-/// Draws a scene by apparent shading: every body moved to where the camera sees it (Nollert et al. 2000,
-/// Eq. 1), cut until flat triangles show it to the pixel, and drawn by a z-buffer or a painter.
+/// Draws a scene: by apparent shading, every body moved to where the camera sees it (Nollert et al. 2000, Eq. 1), cut
+/// until flat triangles show it to the pixel, and drawn by a z-buffer or a painter; or by tracing rays.
 ///
 /// # Errors
 /// If the bodies would be cut into more pieces than allowed, or than can be painted, or a spectrum cannot be.
@@ -115,12 +133,12 @@ pub fn render(
     step: impl FnMut(Step),
 ) -> Result<(Film, Report), RenderError> {
     let mut film = Film::new(0, 0);
-    let shading = options.shading(scene, [camera])?;
-    let report = render_again(scene, camera, options, &shading, &mut film, step)?;
+    let prepared = options.prepare(scene, [camera])?;
+    let report = render_again(scene, camera, options, &prepared, &mut film, step)?;
     Ok((film, report))
 }
 
-/// As [`render`], on a film used before, with a [shading](Options::shading) made before.
+/// As [`render`], on a film used before, with what was [prepared](Options::prepare) before by the same options.
 ///
 /// # Errors
 /// As [`render`].
@@ -128,10 +146,20 @@ pub fn render_again(
     scene: &Scene,
     camera: &Camera,
     options: &Options,
-    shading: &Shading,
+    prepared: &Prepared,
     film: &mut Film,
     mut step: impl FnMut(Step),
 ) -> Result<Report, RenderError> {
+    let samples = Samples::new(options.samples);
+    let shading = &prepared.shading.seen_by(&camera.observer);
+    let triangles = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
+    if let Some(tracer) = &prepared.tracer {
+        let start = Instant::now();
+        step(Step::Drawing);
+        let rays = tracer.trace(scene, camera, samples.offsets(), shading, film);
+        let (pieces, subdivision) = (triangles, Duration::ZERO);
+        return Ok(Report { triangles, pieces, subdivision, shading: start.elapsed(), rays: Some(rays) });
+    }
     let field = Field::new(&camera.lens);
     let pieces = |(_, _, seen): &(ApparentMap, Arc<Mesh>, ApparentMesh)| seen.triangles.len();
     let start = Instant::now();
@@ -151,17 +179,16 @@ pub fn render_again(
     step(Step::Drawing);
     let drawables: Vec<_> =
         seen.iter().enumerate().map(|(body, (map, mesh, seen))| Drawable { body, mesh, map, seen }).collect();
-    let samples = Samples::new(options.samples);
-    let shading = &shading.seen_by(&camera.observer);
     match options.raster {
         Raster::Cpu => shade_again(&drawables, &camera.lens, &samples, shading, film),
         Raster::Skia => *film = paint(&drawables, &camera.lens, &samples, shading)?,
     }
     let report = Report {
-        triangles: scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum(),
+        triangles,
         pieces: seen.iter().map(pieces).sum(),
         subdivision: cut - start,
         shading: cut.elapsed(),
+        rays: None,
     };
     Ok(report)
 }

@@ -24,12 +24,12 @@ impl Case {
         Self { expected: read_exr(&reference(&format!("scenes/{name}.exr"))), json, folder, scene }
     }
 
-    fn render(&self, tolerance: f64) -> Channels {
+    fn render(&self, method: &str, tolerance: f64) -> Channels {
         let out = self.folder.path().join("out.exr");
         Command::cargo_bin("terrell")
             .unwrap()
             .args(["render", self.scene.to_str().unwrap(), "-o", out.to_str().unwrap(), "--quiet"])
-            .args(["--color", "flat", "--tolerance", &tolerance.to_string()])
+            .args(["--color", "flat", "--method", method, "--tolerance", &tolerance.to_string()])
             .assert()
             .success();
         read_exr(&out)
@@ -51,7 +51,7 @@ fn compare(name: &str) -> Vec<f64> {
     let expected = &case.expected;
     let mut errors = Vec::new();
     for tolerance in [1.0, 0.25, 1.0 / 16.0, 1.0 / 64.0, 1.0 / 256.0] {
-        let got = case.render(tolerance);
+        let got = case.render("apparent", tolerance);
         let peak = ["R", "G", "B"].iter().flat_map(|c| &expected[*c]).copied().fold(0.0, f32::max);
         let mut worst = 0f64;
         let mut compared = 0;
@@ -144,7 +144,7 @@ fn bodies_with_opposite_velocities() {
 /// else is as bright.
 fn is_lit_right(name: &str) {
     let case = Case::new(name);
-    let (expected, got) = (&case.expected, case.render(0.25));
+    let (expected, got) = (&case.expected, case.render("apparent", 0.25));
     let peak = expected["R"].iter().copied().fold(0.0, f32::max);
     let [mut bright, mut dark] = [0; 2];
     for i in (0..expected["body"].len()).filter(|&i| expected["inner"][i] != 0.0) {
@@ -172,4 +172,54 @@ fn lamp_at_rest() {
 #[test]
 fn lamp_in_motion() {
     is_lit_right("shadow_lamp_on_cube_b060");
+}
+
+/// Traced, every inner pixel is as the reference has it, shadows and all. Both files are rounded to f32; light of lamps is a
+/// product of some ten factors.
+fn is_traced_right(name: &str) {
+    let case = Case::new(name);
+    let (expected, got) = (&case.expected, case.render("trace", 0.25));
+    let peak = ["R", "G", "B"].iter().flat_map(|c| &expected[*c]).copied().fold(0.0, f32::max);
+    let [mut compared, mut others] = [0; 2];
+    for i in (0..expected["body"].len()).filter(|&i| expected["inner"][i] != 0.0) {
+        let at = format!("{name}, pixel {}, {}", i % 160, i / 160);
+        assert_eq!(got["body"][i], expected["body"][i], "{at}");
+        if expected["body"][i] < 0.0 {
+            assert_eq!(got["distance"][i], 0.0);
+            continue;
+        }
+        compared += 1;
+        for channel in ["distance", "doppler"] {
+            let ratio = f64::from(got[channel][i]) / f64::from(expected[channel][i]);
+            assert!((ratio - 1.0).abs() <= 2.0 * f64::from(f32::EPSILON), "{at}: {channel} {ratio}");
+        }
+        if case.polygon(got["body"][i], got["face"][i]) != expected["face"][i] {
+            others += 1;
+            continue;
+        }
+        for channel in ["R", "G", "B"] {
+            let off = got[channel][i] - expected[channel][i];
+            assert!(off.abs() <= 1e-6 * peak, "{at}: {off} of {peak}");
+        }
+    }
+    assert!(compared > 300, "{name}: only {compared} pixels compared");
+    // The sphere's polygons are several triangles, not in one plane.
+    assert_eq!(others, 0, "{name}");
+}
+
+#[test]
+fn traced() {
+    for name in [
+        "cube_b000",
+        "cube_b090",
+        "lattice_b090",
+        "gate_b099_x6.0",
+        "gate_b099_x1.5_equirect",
+        "sphere_b090",
+        "opposed_b090",
+        "shadow_cube_b050",
+        "shadow_lamp_on_cube_b060",
+    ] {
+        is_traced_right(name);
+    }
 }

@@ -11,6 +11,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use terrell::picture::MovieFormat;
+use terrell::plan::Method;
 use terrell::render::Options;
 use terrell::scene::{Animation, Camera, Pace, STANDARD_BETA, Scene, Speed};
 use terrell::tone::{Development, Tone};
@@ -115,7 +116,6 @@ impl Animate {
         let fps = takes[0].animation.fps;
         let mut shooting = Shooting {
             takes: &takes,
-            options: &options,
             each_metered: self.look.develop.is_each(),
             size,
             bar: progress_bar(takes.iter().map(|t| t.animation.frames as usize).sum(), self.report.quiet),
@@ -156,22 +156,24 @@ impl Animate {
             speed => speed,
         };
         let mut scene = self.look.scene.open(source, speed, |view| self.look.set_lens(view))?;
-        scene.notes.extend(summary::light_notes(&scene, options.coloring));
+        let mut options = options.clone();
+        self.look.choose(&mut options, &scene)?;
+        scene.notes.extend(summary::light_notes(&scene, &options));
         let animation = self.animation(&scene)?;
         let cameras = animation.cameras(&scene)?;
         let panel = |mut scene: Scene, cameras: Vec<Camera>| -> Result<Panel, Fault> {
             let overlay = self.drawing.overlay(&scene)?;
-            let shading = options.shading(&scene, &cameras)?;
-            scene.notes.extend(summary::table_notes(&shading));
+            let prepared = options.prepare(&scene, &cameras)?;
+            scene.notes.extend(summary::table_notes(&prepared.shading));
             let develop = &self.look.develop;
             let tone = develop.tone(options.coloring);
             let exposure = develop.exposure(options.coloring, &scene);
             let development = match develop.is_each() {
                 // Every frame's own.
                 true => Development { ev: 0.0, tone },
-                false => exposure.of_film(tone, &scene, &cameras, options)?,
+                false => exposure.of_film(tone, &scene, &cameras, &options)?,
             };
-            Ok(Panel { scene, cameras, overlay, shading, development })
+            Ok(Panel { scene, cameras, overlay, prepared, development })
         };
         let mut panels = Vec::new();
         if self.beside_standard {
@@ -179,7 +181,7 @@ impl Animate {
             panels.push(panel(standard, slow)?);
         }
         panels.push(panel(scene, cameras)?);
-        Ok(Take { panels, animation })
+        Ok(Take { options, panels, animation })
     }
 
     fn animation(&self, scene: &Scene) -> Result<Animation, Fault> {
@@ -284,13 +286,17 @@ impl Done<'_> {
             ),
         };
         let mut line = format!(
-            "{}: {} of {}x{} {}, {} a second, flat spacetime, {bodies}: apparent shading on the CPU, {}{}\n",
+            "{}: {} of {}x{} {}, {} a second, flat spacetime, {bodies}: {} on the CPU, {}{}\n",
             self.output.display(),
             frames(tally.drawn),
             self.size[0],
             self.size[1],
             panel.cameras[0].lens.projection(),
             take.animation.fps,
+            match take.options.method {
+                Method::Apparent => "apparent shading",
+                Method::Trace => "ray tracing",
+            },
             self.colors_in_words(),
             took,
         );
@@ -326,6 +332,7 @@ impl Done<'_> {
             };
             json!({
                 "scene": panel.scene.name,
+                "method": take.options.method.to_string(),
                 "frames": take.animation.frames,
                 "pace": pace,
                 "first_camera": summary::camera(first),
@@ -334,7 +341,7 @@ impl Done<'_> {
                 "beside_standard": take.panels.len() > 1,
                 "exposure_ev": take.panels.iter().map(|p| self.ev(p)).collect::<Vec<_>>(),
                 "lights": summary::lights(&panel.scene),
-                "spectra": summary::spectra(panel.shading.tables()),
+                "spectra": summary::spectra(panel.prepared.shading.tables()),
                 "notes": panel.scene.notes,
             })
         };
@@ -342,7 +349,6 @@ impl Done<'_> {
             "terrell": env!("CARGO_PKG_VERSION"),
             "output": self.output,
             "spacetime": "flat",
-            "method": "apparent",
             "raster": summary::raster(self.options.raster),
             "threads": rayon::current_num_threads(),
             "color": self.options.coloring.to_string(),

@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use terrell::color::Coloring;
 use terrell::exposure::Exposure;
 use terrell::light::DopplerAt;
+use terrell::plan::{Method, cheapest};
 use terrell::render::{Options, Raster};
 use terrell::scene::{Choice, Projection, Scene, Speed, View};
 use terrell::tone::Tone;
@@ -54,7 +55,10 @@ pub struct LookFlags {
     doppler: DopplerFlag,
     #[command(flatten)]
     pub develop: DevelopFlags,
-    /// What decides which triangle a pixel sees
+    /// How what a pixel sees is found
+    #[arg(long, value_enum, default_value = "auto")]
+    method: MethodFlag,
+    /// What decides which triangle a pixel sees, where nothing is traced
     #[arg(long, value_enum, default_value = "cpu")]
     raster: RasterFlag,
 }
@@ -134,7 +138,17 @@ impl DevelopFlags {
     }
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum MethodFlag {
+    /// The cheapest that is right for the scene
+    Auto,
+    /// Polygons, moved to where they are seen: without shadows
+    Apparent,
+    /// Rays, followed back in time: with shadows
+    Trace,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum DopplerFlag {
     /// Exactly, in every pixel
     Pixel,
@@ -166,7 +180,7 @@ pub(super) enum ColorFlag {
     Doppler,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum RasterFlag {
     /// A z-buffer: exact
     Cpu,
@@ -193,6 +207,31 @@ impl LookFlags {
             },
             ..Options::default()
         })
+    }
+
+    /// Chooses the method for a scene; why, if it was not asked for.
+    pub fn choose(&self, options: &mut Options, scene: &Scene) -> Result<Option<&'static str>, Fault> {
+        // What only polygons have.
+        let of_polygons = if self.raster == RasterFlag::Skia {
+            Some("--raster skia")
+        } else if self.doppler == DopplerFlag::Vertex {
+            Some("--doppler vertex")
+        } else {
+            None
+        };
+        let (method, why) = match (self.method, of_polygons) {
+            (MethodFlag::Apparent, _) | (MethodFlag::Auto, Some(_)) => (Method::Apparent, None),
+            (MethodFlag::Trace, Some(flag)) => {
+                return Err(format!("{flag} is about polygons; rays (--method trace) have none").into());
+            }
+            (MethodFlag::Trace, None) => (Method::Trace, None),
+            (MethodFlag::Auto, None) => {
+                let (method, why) = cheapest(scene);
+                (method, Some(why))
+            }
+        };
+        options.method = method;
+        Ok(why)
     }
 
     /// What the flags say of the projection.

@@ -14,7 +14,7 @@ use terrell::drawing::Shot;
 use terrell::film::Film;
 use terrell::light::Shading;
 use terrell::picture::{self, Format};
-use terrell::render::{Options, Raster, Report, Step, render_again};
+use terrell::render::{Options, Report, Step, render_again};
 use terrell::scene::{Camera, Scene};
 use terrell::tone::Development;
 
@@ -53,8 +53,9 @@ pub struct Render {
 impl Render {
     pub fn run(self) -> Result<(), Fault> {
         let start = Instant::now();
-        let options = self.look.options()?;
+        let mut options = self.look.options()?;
         let mut scene = self.scene()?;
+        let why = self.look.choose(&mut options, &scene)?;
         let camera = scene.camera()?;
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
         Format::of(&output)?;
@@ -65,13 +66,14 @@ impl Render {
         let read = start.elapsed();
         let mut progress = Progress::new(self.report.quiet);
         let coloring = options.coloring;
-        scene.notes.extend(summary::light_notes(&scene, coloring));
+        scene.notes.extend(summary::light_notes(&scene, &options));
         let mut film = Film::new(0, 0);
-        let shading = options.shading(&scene, [&camera])?;
+        let prepared = options.prepare(&scene, [&camera])?;
         let tables = start.elapsed() - read;
-        scene.notes.extend(summary::table_notes(&shading));
-        let report =
-            render_again(&scene, &camera, &options, &shading, &mut film, |step| progress.show(&scene, step))?;
+        scene.notes.extend(summary::table_notes(&prepared.shading));
+        let report = render_again(&scene, &camera, &options, &prepared, &mut film, |step| {
+            progress.show(&scene, step)
+        })?;
         progress.clear();
         let exposure = self.look.develop.exposure(coloring, &scene);
         let tone = self.look.develop.tone(coloring);
@@ -94,7 +96,8 @@ impl Render {
             camera: &camera,
             options: &options,
             film: &film,
-            shading: &shading,
+            shading: &prepared.shading,
+            why,
             development,
             report,
             output,
@@ -166,6 +169,7 @@ struct Done<'a> {
     options: &'a Options,
     film: &'a Film,
     shading: &'a Shading,
+    why: Option<&'static str>,
     development: Development,
     report: Report,
     output: PathBuf,
@@ -176,18 +180,12 @@ impl Done<'_> {
     fn line(&self) -> String {
         let bodies = summary::bodies_in_words(&summary::gammas(self.scene, self.camera));
         let mut line = format!(
-            "{}: {}x{} {}, flat spacetime, {bodies}: apparent shading on the CPU{}, {} triangles cut into {} for {} px, {}, {:.0} ms\n",
+            "{}: {}x{} {}, flat spacetime, {bodies}: {}, {}, {:.0} ms\n",
             self.output.display(),
             self.film.width,
             self.film.height,
             self.camera.lens.projection(),
-            match self.options.raster {
-                Raster::Cpu => "",
-                Raster::Skia => " (painted back to front)",
-            },
-            self.report.triangles,
-            self.report.pieces,
-            self.options.tolerance,
+            summary::method_in_words(self.options, &self.report, self.why),
             match Format::of(&self.output) {
                 // The light as it is.
                 Ok(Format::Exr) => format!("{} colour", self.options.coloring),
@@ -209,14 +207,15 @@ impl Done<'_> {
     }
 
     fn summary(&self) -> serde_json::Value {
-        let Self { scene, camera, options, film, shading, development, report, output, times } = self;
+        let Self { scene, camera, options, film, shading, why, development, report, output, times } = self;
         let doppler = film.doppler.iter().zip(&film.body).filter(|(_, b)| **b >= 0).map(|(d, _)| [*d, *d]);
         json!({
             "terrell": env!("CARGO_PKG_VERSION"),
             "scene": scene.name,
             "output": output,
             "spacetime": "flat",
-            "method": "apparent",
+            "method": options.method.to_string(),
+            "method_because": why,
             "raster": summary::raster(options.raster),
             "threads": rayon::current_num_threads(),
             "color": options.coloring.to_string(),
@@ -231,6 +230,7 @@ impl Done<'_> {
             "lights": summary::lights(scene),
             "triangles": report.triangles,
             "pieces": report.pieces,
+            "rays": report.rays.map(summary::rays),
             "pixels_covered": film.covered(),
             "doppler_range": doppler.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
             "seconds": {

@@ -4,9 +4,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use terrell::drawing::{Overlay, Shot};
 use terrell::film::Film;
-use terrell::light::Shading;
 use terrell::picture::{self, FrameFolder, Movie, MovieFormat};
-use terrell::render::{Options, render_again};
+use terrell::render::{Options, Prepared, render_again};
 use terrell::scene::{Animation, Camera, Scene};
 use terrell::tone::Development;
 
@@ -20,12 +19,14 @@ pub struct Panel {
     pub cameras: Vec<Camera>,
     pub overlay: Option<Overlay>,
     /// Made once for all frames.
-    pub shading: Shading,
+    pub prepared: Prepared,
     pub development: Development,
 }
 
 /// A scene on its way to frames: side by side what is to be seen side by side.
 pub struct Take {
+    /// How it is drawn, by a method that is right for it.
+    pub options: Options,
     pub panels: Vec<Panel>,
     pub animation: Animation,
 }
@@ -69,7 +70,6 @@ struct Frame {
 /// Scenes on their way to a film.
 pub struct Shooting<'a> {
     pub takes: &'a [Take],
-    pub options: &'a Options,
     /// Whether every frame is metered by itself.
     pub each_metered: bool,
     pub size: [u32; 2],
@@ -132,7 +132,7 @@ impl Shooting<'_> {
         let mut films: Vec<Film> = Vec::new();
         let mut index = 0;
         for take in self.takes {
-            let look = format!("{} {:?} {}", env!("CARGO_PKG_VERSION"), self.options, self.each_metered);
+            let look = format!("{} {:?} {}", env!("CARGO_PKG_VERSION"), take.options, self.each_metered);
             let scenes =
                 take.panels.iter().map(|p| (p.scene.fingerprint().with_value(&p.development), &p.overlay));
             let looks: Vec<_> = scenes
@@ -182,8 +182,8 @@ impl Shooting<'_> {
         let mut pictures = Vec::new();
         let film_width = take.panels[0].scene.view.size[0] as usize;
         for (panel, film) in take.panels.iter().zip(films) {
-            let Panel { scene, cameras, overlay, shading, development } = panel;
-            let report = render_again(scene, &cameras[i], self.options, shading, film, |_| ())?;
+            let Panel { scene, cameras, overlay, prepared, development } = panel;
+            let report = render_again(scene, &cameras[i], &take.options, prepared, film, |_| ())?;
             self.tally.pieces += report.pieces;
             self.tally.mapping += report.subdivision;
             self.tally.shading += report.shading;
@@ -196,8 +196,8 @@ impl Shooting<'_> {
             self.tally.dark += usize::from(dark && film.covered() > 0);
             let mut pixels = picture::pixels_srgb(film, &development);
             if let Some(overlay) = overlay {
-                let tolerance = self.options.tolerance;
-                let coloring = shading.coloring();
+                let tolerance = take.options.tolerance;
+                let coloring = prepared.shading.coloring();
                 let shot = Shot { scene, camera: &cameras[i], film, tolerance, coloring, development };
                 for note in overlay.draw(&mut pixels, &shot) {
                     if !self.notes.contains(&note) {

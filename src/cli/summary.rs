@@ -4,11 +4,13 @@ use serde_json::{Value, json};
 use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::geodesic::{Event, World};
-use terrell::light::{DopplerAt, Shading, TableInfo, has_near_lights};
+use terrell::light::{DopplerAt, Shading, TableInfo, has_shadows};
+use terrell::plan::Method;
 use terrell::relativity::ApparentMap;
-use terrell::render::Raster;
+use terrell::render::{Options, Raster, Report};
 use terrell::scene::{Body, Camera, Light, Scene};
 use terrell::tone::Development;
+use terrell::trace::Count;
 
 /// Relative γ of every body and the camera.
 pub fn gammas(scene: &Scene, camera: &Camera) -> Vec<f64> {
@@ -96,11 +98,53 @@ pub fn table_notes(shading: &Shading) -> Vec<String> {
     bad.map(note).collect()
 }
 
+/// How many rays there were.
+pub fn rays(count: Count) -> Value {
+    let Count { primary, shadow, blocked } = count;
+    json!({ "from_camera": primary, "to_lights": shadow, "to_lights_blocked": blocked })
+}
+
 /// What is not drawn of a scene's light, for people to read.
-pub fn light_notes(scene: &Scene, coloring: Coloring) -> Option<String> {
-    (coloring != Coloring::Doppler && has_near_lights(scene)).then(|| {
-        "the lights' shadows and what surfaces throw on each other need ray tracing; it is shaded without them".to_owned()
-    })
+pub fn light_notes(scene: &Scene, options: &Options) -> Option<String> {
+    shadow_note(scene, options.coloring)
+        .filter(|_| options.method == Method::Apparent)
+        .map(|note| format!("{note}; --method trace draws them"))
+}
+
+/// As [`light_notes`], where nothing can be traced.
+pub fn shadow_note(scene: &Scene, coloring: Coloring) -> Option<String> {
+    let shadows = coloring != Coloring::Doppler && has_shadows(scene);
+    shadows.then(|| "the lights' shadows are not there".to_owned())
+}
+
+/// What drew it, and why: "apparent shading on the CPU, 12 triangles cut into 96 for 0.25 px".
+pub fn method_in_words(options: &Options, report: &Report, why: Option<&str>) -> String {
+    let why = why.map_or_else(String::new, |why| format!(" ({why})"));
+    match (report.rays, options.raster) {
+        (Some(rays), _) => {
+            let shadows = match rays.shadow {
+                0 => String::new(),
+                n => format!(", {} to lights", count_in_words(n)),
+            };
+            let primary = count_in_words(rays.primary);
+            format!("ray tracing on the CPU{why}, {} triangles, {primary} rays{shadows}", report.triangles)
+        }
+        (None, raster) => format!(
+            "apparent shading on the CPU{why}{}, {} triangles cut into {} for {} px",
+            if raster == Raster::Skia { " (painted back to front)" } else { "" },
+            report.triangles,
+            report.pieces,
+            options.tolerance,
+        ),
+    }
+}
+
+/// "921 600", "3.7 million".
+fn count_in_words(count: u64) -> String {
+    match count {
+        0..1_000_000 => count.to_string(),
+        _ => format!("{:.1} million", count as f64 * 1e-6),
+    }
 }
 
 /// The greatest number of a film's colours.

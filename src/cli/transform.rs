@@ -157,7 +157,7 @@ impl Transform {
         if !coloring.is_beamed() {
             return notes;
         }
-        notes.extend(summary::light_notes(scene, coloring));
+        notes.extend(summary::shadow_note(scene, coloring));
         if !scene.lights.is_empty() {
             notes.push(
                 "light is taken at the vertices: where a lamp is near, give what it lights more of them"

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use std::ffi::OsString;
+use terrell::film::Samples;
 use terrell::geodesic::{Event, World};
-use terrell::raster::Samples;
 
 /// A number with a minus sign is a value, never a flag: it gets a space before it, which every parser of
 /// numbers here takes off again.

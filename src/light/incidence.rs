@@ -67,6 +67,8 @@ pub(super) struct NearLight {
 pub(super) struct Arrival {
     /// Unit vector in the surface's rest frame.
     pub to_light: DVec3,
+    /// From the surface's event to the lamp's when the light left it, in the surface's rest frame: a null vector.
+    pub back: FourVector<Rest>,
     /// ν at the surface over ν of the lamp.
     pub doppler: f64,
     /// Radiant intensity over the square of the distance, both in the lamp's frame: irradiance, were there no shift.
@@ -115,6 +117,7 @@ impl NearLight {
             let edge = ((cosine - dark) / (bright - dark).max(1e-6)).clamp(0.0, 1.0);
             edge * edge
         });
-        Some(Arrival { to_light, doppler, irradiance: light.strength * in_cone / (distance * distance) })
+        let irradiance = light.strength * in_cone / (distance * distance);
+        Some(Arrival { to_light, back: -arriving, doppler, irradiance })
     }
 }

@@ -5,6 +5,7 @@
 //! of the surface does not matter here.
 
 mod ambient;
+mod facet;
 mod gloss;
 mod incidence;
 mod point;
@@ -12,7 +13,9 @@ mod seen;
 mod shading;
 mod tables;
 
+pub use facet::Facet;
+pub(crate) use facet::clamped;
 pub use point::Point;
-pub use seen::SeenShading;
-pub use shading::{DopplerAt, Shading, ShadingError, has_near_lights};
+pub use seen::{Approach, SeenShading};
+pub use shading::{DopplerAt, Shading, ShadingError, has_shadows};
 pub use tables::TableInfo;

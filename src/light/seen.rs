@@ -5,6 +5,17 @@ use super::{DopplerAt, Point, Shading, gloss};
 use crate::color::{Coloring, false_color};
 use crate::scene::{Colors, EmissionLaw, Gloss};
 use crate::spectrum::luminance;
+use terrell_geodesic::{FourVector, Rest};
+
+/// The way light came to a point of a surface, backwards.
+#[derive(Clone, Copy, Debug)]
+pub struct Approach {
+    /// A null vector in the surface's rest frame, into the past: from the surface's event to the lamp's, or, for light
+    /// from infinity, to where it came from.
+    pub back: FourVector<Rest>,
+    /// Whether it ends there.
+    pub ends: bool,
+}
 
 /// A [`Shading`] as one observer sees it at one moment.
 #[derive(Clone, Debug)]
@@ -24,8 +35,36 @@ impl<'a> SeenShading<'a> {
         self.shading.doppler_at
     }
 
+    /// How many lights there are.
+    pub fn lights(&self) -> usize {
+        self.shading.lights.len()
+    }
+
+    /// Whether a material of a body reflects light.
+    pub fn is_lit(&self, body: usize, material: usize) -> bool {
+        self.shading.bodies[body].materials[material].lit
+    }
+
+    /// The way back from a point of a body to a light; none where it does not shine onto the surface's side that is
+    /// seen, or comes from everywhere.
+    pub fn approach(&self, body: usize, light: usize, point: &Point) -> Option<Approach> {
+        let (back, ends) = match &self.shading.bodies[body].incidences[light] {
+            Incidence::Distant { to_light, .. } => (FourVector::seen_from(*to_light), false),
+            Incidence::Near => {
+                let near = self.near[body][light].as_ref()?;
+                let arrival = near.at(&self.shading.lights[light].light, point)?;
+                (arrival.back, arrival.irradiance > 0.0)
+            }
+            Incidence::Ambient { .. } => return None,
+        };
+        let reaches =
+            point.normal.dot(back.xyz()) > 0.0 && (ends || !self.shading.lights[light].light.kind.is_near());
+        reaches.then_some(Approach { back, ends })
+    }
+
     /// Linear sRGB radiance, in units of the film's white, of a point of a body that is seen with the Doppler factor
-    /// `doppler`: its material by number, its colours and its place, which are asked for only if they matter.
+    /// `doppler`: its material by number, its colours and its place, which are asked for only if they matter. There are no
+    /// shadows.
     #[inline]
     pub fn radiance(
         &self,
@@ -34,6 +73,20 @@ impl<'a> SeenShading<'a> {
         doppler: f64,
         colors: impl FnOnce() -> Colors,
         point: impl FnOnce() -> Point,
+    ) -> [f32; 3] {
+        self.radiance_with_shadows(body, material, doppler, colors, point, |_| true)
+    }
+
+    /// As [`radiance`](Self::radiance), with shadows: `reaches` says whether a light's way to the point is free.
+    #[inline]
+    pub fn radiance_with_shadows(
+        &self,
+        body: usize,
+        material: usize,
+        doppler: f64,
+        colors: impl FnOnce() -> Colors,
+        point: impl FnOnce() -> Point,
+        reaches: impl Fn(usize) -> bool,
     ) -> [f32; 3] {
         let coloring = self.shading.coloring;
         if coloring == Coloring::Doppler {
@@ -44,7 +97,7 @@ impl<'a> SeenShading<'a> {
         if !material.lit && material.law == EmissionLaw::Isotropic {
             return finite(material.shines(coloring, doppler, colors.sum()));
         }
-        finite(self.at_point(body, material, doppler, colors, &point()))
+        finite(self.at_point(body, material, doppler, colors, &point(), reaches))
     }
 
     fn at_point(
@@ -54,6 +107,7 @@ impl<'a> SeenShading<'a> {
         doppler: f64,
         colors: Colors,
         point: &Point,
+        reaches: impl Fn(usize) -> bool,
     ) -> [f32; 3] {
         let coloring = self.shading.coloring;
         let shines = if material.lit { colors.emission } else { colors.sum() };
@@ -63,7 +117,7 @@ impl<'a> SeenShading<'a> {
             sum = material.shines(coloring, doppler, shines).map(|v| v * law as f32);
         }
         if material.lit {
-            for index in 0..self.shading.lights.len() {
+            for index in (0..self.lights()).filter(|&light| reaches(light)) {
                 let more = self.reflected(body, material, index, doppler, colors.base, point);
                 sum = [0, 1, 2].map(|i| sum[i] + more[i]);
             }

@@ -188,9 +188,9 @@ impl Shading {
     }
 }
 
-/// Whether lights stand somewhere, so that what they light has shadows, which are not drawn.
-pub fn has_near_lights(scene: &Scene) -> bool {
+/// Whether there are lights that something can stand in the way of, and surfaces that reflect them.
+pub fn has_shadows(scene: &Scene) -> bool {
     let lit = |m: &Material| m.is_lit(true);
     let is_lit = |b: &crate::scene::Body| b.mesh.materials.is_empty() || b.mesh.materials.iter().any(lit);
-    scene.lights.iter().any(|l| l.kind.is_near()) && scene.bodies.iter().any(is_lit)
+    scene.lights.iter().any(|l| l.kind.casts_shadows()) && scene.bodies.iter().any(is_lit)
 }

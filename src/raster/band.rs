@@ -1,19 +1,11 @@
 use super::bins::{Binned, Bins};
 use super::triangle::{HalfPlane, Linear, Planes, Surface, owns_boundary};
-use super::{BAND, Drawable, Samples};
-use crate::light::{DopplerAt, Point, SeenShading};
+use super::{BAND, Drawable};
+use crate::film::{Rows, Samples};
+use crate::light::{DopplerAt, Facet, SeenShading, clamped};
 use crate::relativity::RestSky;
-use crate::scene::{Colors, Lens, Material, Projection};
+use crate::scene::{Lens, Projection};
 use glam::{DVec2, DVec3};
-
-/// The film's rows to fill.
-pub(super) struct Rows<'a> {
-    pub color: &'a mut [[f32; 3]],
-    pub distance: &'a mut [f32],
-    pub doppler: &'a mut [f32],
-    pub body: &'a mut [i32],
-    pub face: &'a mut [i32],
-}
 
 /// What one thread draws a band in, used again for the next.
 #[derive(Default)]
@@ -116,11 +108,11 @@ impl Band {
         top: u32,
         mut rows: Rows<'_>,
     ) {
-        let weight = 1.0 / samples.0.len() as f32;
+        let weight = 1.0 / samples.offsets().len() as f32;
         let skies: Vec<RestSky> = bodies.iter().map(|b| b.map.rest_sky()).collect();
         let columns = bins.columns(top / BAND, bodies.len());
         let stage = Stage { bodies, skies: &skies, bins };
-        for (index, &offset) in samples.0.iter().enumerate() {
+        for (index, &offset) in samples.offsets().iter().enumerate() {
             let sampling = Sampling { lens, top, offset: DVec2::from_array(offset) };
             self.clear(&sampling, rows.color.len());
             self.rasterise(&stage, &columns, &sampling);
@@ -146,13 +138,13 @@ impl Band {
     ) {
         let skies: Vec<RestSky> = bodies.iter().map(|b| b.map.rest_sky()).collect();
         let stage = Stage { bodies, skies: &skies, bins };
-        let sampling = Sampling { lens, top, offset: DVec2::from_array(samples.0[index]) };
+        let sampling = Sampling { lens, top, offset: DVec2::from_array(samples.offsets()[index]) };
         self.clear(&sampling, rows.color.len());
         for (i, triangle) in self.triangle.iter_mut().enumerate() {
             let is_sky = self.directions.get(i).is_none_or(|n| !n.is_nan());
             *triangle = if is_sky { number(i).unwrap_or(NONE) } else { NONE };
         }
-        let weight = 1.0 / samples.0.len() as f32;
+        let weight = 1.0 / samples.offsets().len() as f32;
         self.develop(&stage, shading, &sampling, weight, index == 0, &mut rows);
     }
 
@@ -384,18 +376,20 @@ impl Band {
                     DopplerAt::Pixel => length / rest.length,
                     DopplerAt::Vertex => seen.doppler_of_vertices(direction),
                 };
-                let neighbours = || {
+                let v_rest = seen.rest_direction(direction, rest.along);
+                let at = v_rest / nearness;
+                let sights = || {
                     // A look along the line of sight itself where there is no neighbour: as sharp as can be.
                     let to =
                         |dx, dy| sampling.towards(x, line, dx * spread, dy * spread).unwrap_or(direction);
-                    [to(1.0, 0.0), to(0.0, 1.0)]
+                    [v_rest, seen.in_rest_frame(to(1.0, 0.0)), seen.in_rest_frame(to(0.0, 1.0))]
                 };
                 let light = shading.radiance(
                     seen.drawable.body,
-                    seen.drawable.mesh.material_index(seen.face),
+                    seen.drawable.mesh.material_index(seen.facet.face()),
                     doppler,
-                    || seen.colors(direction, rest.along, nearness, neighbours),
-                    || seen.point(direction, rest.along, nearness),
+                    || seen.facet.colors(at, sights),
+                    || seen.facet.point(at),
                 );
                 let color = &mut rows.color[i];
                 *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
@@ -403,7 +397,7 @@ impl Band {
                     rows.distance[i] = (length / nearness) as f32;
                     rows.doppler[i] = doppler as f32;
                     rows.body[i] = seen.drawable.body as i32;
-                    rows.face[i] = seen.face as i32;
+                    rows.face[i] = seen.facet.face() as i32;
                 }
             }
         }
@@ -414,9 +408,8 @@ impl Band {
 struct Seen<'a> {
     drawable: &'a Drawable<'a>,
     sky: &'a RestSky,
-    face: usize,
-    /// Corners from the observer, rest frame.
-    rest: [DVec3; 3],
+    /// The mesh's triangle, in the rest frame.
+    facet: Facet<'a>,
     /// Corners of the piece, as it is seen.
     corners: [DVec3; 3],
     surface: Surface,
@@ -430,31 +423,23 @@ impl<'a> Seen<'a> {
         let corners = piece.corners.map(|v| seen.vertices[v as usize]);
         let rest = mesh.corners(face).map(|v| map.offset_rest(v));
         let surface = Surface::new(map, sky, rest, corners, &Planes::new(corners)?);
-        Some(Self { drawable, sky, face, rest, corners, surface })
-    }
-
-    /// Barycentric coordinates of the point a line of sight meets; negative beside the triangle.
-    #[inline]
-    fn weights(&self, v: DVec3, rest_along: f64, nearness: f64) -> [f64; 3] {
-        let v_rest = self.rest_direction(v, rest_along);
-        let [a, b, c] = self.rest.map(|corner| corner - v_rest / nearness);
-        let normal = (self.rest[1] - self.rest[0]).cross(self.rest[2] - self.rest[0]);
-        let areas = [b.cross(c), c.cross(a), a.cross(b)].map(|area| area.dot(normal));
-        areas.map(|area| area / normal.length_squared())
+        Some(Self { drawable, sky, facet: Facet::new(mesh, face, rest), corners, surface })
     }
 
     /// For a line of sight beside the triangle, 1/s of the triangle's point nearest to it; none inside.
     fn beside(&self, v: DVec3, length: f64, rest_along: f64, plane: f64) -> Option<f64> {
-        let weights = self.weights(v, rest_along, plane);
-        let v_rest = self.rest_direction(v, rest_along).normalize();
+        let v_rest = self.rest_direction(v, rest_along);
+        let weights = self.facet.weights(v_rest / plane);
+        let v_rest = v_rest.normalize();
         let away = |p: DVec3| p - v_rest * p.dot(v_rest);
-        let corners = self.drawable.mesh.corners(self.face);
+        let corners = self.drawable.mesh.corners(self.facet.face());
+        let rest = self.facet.corners();
         let nearest_of = |i: usize| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            let (from, along) = (away(self.rest[j]), away(self.rest[k] - self.rest[j]));
+            let (from, along) = (away(rest[j]), away(rest[k] - rest[j]));
             let t = (-from.dot(along) / along.length_squared()).clamp(0.0, 1.0);
             (
-                (from + t * along).length() / (self.rest[j].length() + self.rest[k].length()),
+                (from + t * along).length() / (rest[j].length() + rest[k].length()),
                 corners[j].lerp(corners[k], t),
             )
         };
@@ -476,64 +461,6 @@ impl<'a> Seen<'a> {
         weights[0] * doppler[0] + weights[1] * doppler[1] + weights[2] * doppler[2]
     }
 
-    /// The point a line of sight meets, with its normal.
-    fn point(&self, v: DVec3, rest_along: f64, nearness: f64) -> Point {
-        let offset = self.rest_direction(v, rest_along) / nearness;
-        let [a, b, c] = self.rest;
-        let facing = (b - a).cross(c - a);
-        let normals = &self.drawable.mesh.normals;
-        if normals.is_empty() {
-            return Point::new(offset, facing, facing);
-        }
-        let weights = clamped(self.weights(v, rest_along, nearness));
-        let corners = self.drawable.mesh.triangles[self.face];
-        let normal = |v: u32| DVec3::from_array(normals[v as usize].map(f64::from));
-        let normal = (0..3).map(|i| weights[i] * normal(corners[i])).sum::<DVec3>();
-        Point::new(offset, facing, if normal == DVec3::ZERO { facing } else { normal })
-    }
-
-    /// The surface's colours at the point a line of sight meets; `neighbours` gives the lines of sight one pixel
-    /// to the right and below.
-    #[inline]
-    fn colors(
-        &self,
-        v: DVec3,
-        rest_along: f64,
-        nearness: f64,
-        neighbours: impl FnOnce() -> [DVec3; 2],
-    ) -> Colors {
-        let mesh = self.drawable.mesh;
-        let textured = mesh.material_of(self.face).is_some_and(Material::is_textured);
-        if mesh.paint.is_of_faces() && !textured {
-            return mesh.colors(self.face, [1.0, 0.0, 0.0], |_| [1.0; 3]);
-        }
-        let weights = clamped(self.weights(v, rest_along, nearness));
-        if !textured {
-            return mesh.colors(self.face, weights, |_| [1.0; 3]);
-        }
-        let corner_uv = mesh.corner_uv(self.face).unwrap_or_default();
-        let mix = |w: [f64; 3]| w[0] * corner_uv[0] + w[1] * corner_uv[1] + w[2] * corner_uv[2];
-        let (uv, step) = (mix(weights), self.changes(v, weights, neighbours()).map(mix));
-        mesh.colors(self.face, weights, |texture| texture.at(uv, step))
-    }
-
-    /// How barycentric coordinates change to the two neighbouring lines of sight.
-    ///
-    /// They are the products eᵢ·v′ with the planes through the observer and the edges, over their sum: linear
-    /// in v′ up to that sum, so that the change is had without a neighbour that may miss the plane.
-    fn changes(&self, v: DVec3, weights: [f64; 3], neighbours: [DVec3; 2]) -> [[f64; 3]; 2] {
-        let [a, b, c] = self.rest;
-        let planes = [b.cross(c), c.cross(a), a.cross(b)];
-        let here = self.in_rest_frame(v);
-        let whole = (planes[0] + planes[1] + planes[2]).dot(here);
-        neighbours.map(|neighbour| {
-            let step = self.in_rest_frame(neighbour) - here;
-            let parts = planes.map(|e| e.dot(step));
-            let sum = parts[0] + parts[1] + parts[2];
-            [0, 1, 2].map(|i| (parts[i] - weights[i] * sum) / whole)
-        })
-    }
-
     /// A line of sight, boosted.
     fn in_rest_frame(&self, v: DVec3) -> DVec3 {
         let along = self.sky.boosted(v, v.length()).along;
@@ -546,11 +473,4 @@ impl<'a> Seen<'a> {
         let across = v - v.dot(self.sky.axis()) * self.sky.axis();
         self.drawable.map.rotate_back(across + rest_along * self.sky.axis())
     }
-}
-
-/// Barycentric coordinates of a point of the triangle near one beside it.
-fn clamped(weights: [f64; 3]) -> [f64; 3] {
-    let weights = weights.map(|w| w.max(0.0));
-    let sum = weights[0] + weights[1] + weights[2];
-    if sum > 0.0 { weights.map(|w| w / sum) } else { [1.0, 0.0, 0.0] }
 }

@@ -1,5 +1,6 @@
 use super::bounds::{Bounder, Rect};
-use super::{BAND, Drawable, Samples};
+use super::{BAND, Drawable};
+use crate::film::Samples;
 use crate::scene::Lens;
 use rayon::prelude::*;
 

@@ -14,7 +14,7 @@ mod polygon;
 mod triangle;
 
 use crate::apparent::ApparentMesh;
-use crate::film::Film;
+use crate::film::{Film, Rows, Samples};
 use crate::light::SeenShading;
 use crate::relativity::ApparentMap;
 use crate::scene::{Lens, Mesh};
@@ -33,33 +33,6 @@ pub struct Drawable<'a> {
     pub map: &'a ApparentMap,
     /// The mesh as it is seen.
     pub seen: &'a ApparentMesh,
-}
-
-/// Where in a pixel its samples lie, in pixels from its upper left corner.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Samples(Vec<[f64; 2]>);
-
-impl Samples {
-    /// The most samples a pixel can have.
-    pub const MOST: u32 = 1024;
-
-    /// `count` samples a pixel, spread evenly (the R₂ sequence of M. Roberts, 2018, shifted so that one
-    /// sample is the pixel's centre).
-    pub fn new(count: u32) -> Self {
-        // Reciprocals of the plastic number and its square.
-        const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
-        Self(
-            (0..count.clamp(1, Self::MOST)).map(|i| STEP.map(|s| (0.5 + s * f64::from(i)).fract())).collect(),
-        )
-    }
-
-    /// Least and greatest offset, x and y.
-    fn range(&self) -> [[f64; 2]; 2] {
-        let of = |pick: fn(f64, f64) -> f64| {
-            self.0.iter().copied().reduce(|a, b| [pick(a[0], b[0]), pick(a[1], b[1])]).unwrap_or([0.5; 2])
-        };
-        [of(f64::min), of(f64::max)]
-    }
 }
 
 /// Rows drawn as one task.
@@ -90,18 +63,10 @@ fn draw(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, shading: &SeenS
 }
 
 /// Has the film's rows filled, a band of them a task; with the number of its first row.
-fn each_band(film: &mut Film, fill: impl Fn(&mut Band, u32, band::Rows<'_>) + Sync) {
-    let pixels = film.width as usize * BAND as usize;
-    film.color
-        .par_chunks_mut(pixels)
-        .zip(film.distance.par_chunks_mut(pixels))
-        .zip(film.doppler.par_chunks_mut(pixels))
-        .zip(film.body.par_chunks_mut(pixels))
-        .zip(film.face.par_chunks_mut(pixels))
+fn each_band(film: &mut Film, fill: impl Fn(&mut Band, u32, Rows<'_>) + Sync) {
+    film.bands(BAND)
         .enumerate()
-        .for_each_init(Band::default, |band, (index, ((((color, distance), doppler), body), face))| {
-            fill(band, index as u32 * BAND, band::Rows { color, distance, doppler, body, face });
-        });
+        .for_each_init(Band::default, |band, (index, rows)| fill(band, index as u32 * BAND, rows));
 }
 
 #[cfg(test)]
@@ -241,8 +206,8 @@ mod tests {
     #[test]
     fn the_middle_sample_is_the_centre_and_samples_average() {
         let samples = Samples::new(64);
-        assert_eq!(samples.0[0], [0.5, 0.5]);
-        assert!(samples.0.iter().flatten().all(|c| (0.0..1.0).contains(c)));
+        assert_eq!(samples.offsets()[0], [0.5, 0.5]);
+        assert!(samples.offsets().iter().flatten().all(|c| (0.0..1.0).contains(c)));
         // Half the sky white: edge pixels are grey by what they cover.
         let mut mesh = Mesh::new(
             &[DVec3::new(0.013, -50.0, 1.0), DVec3::new(50.0, 0.0, 1.0), DVec3::new(0.013, 50.0, 1.0)],

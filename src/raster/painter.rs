@@ -3,8 +3,9 @@ use super::bounds::Bounder;
 use super::order::{Waiting, back_to_front};
 use super::polygon::{BEYOND, Polygon};
 use super::triangle::{Planes, Surface};
-use super::{Drawable, Samples, each_band};
+use super::{Drawable, each_band};
 use crate::film::Film;
+use crate::film::Samples;
 use crate::light::SeenShading;
 use crate::relativity::RestSky;
 use crate::scene::Lens;
@@ -49,7 +50,7 @@ pub fn paint(
     };
     let bins = Bins::unbinned(bodies);
     let images = images(bodies, lens, samples);
-    for (index, &offset) in samples.0.iter().enumerate() {
+    for (index, &offset) in samples.offsets().iter().enumerate() {
         pixmap.data_mut().fill(0);
         // Pixels are filled by their centres.
         let shift = 0.5 + f64::from(MARGIN) - DVec2::from_array(offset);

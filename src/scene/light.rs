@@ -51,6 +51,11 @@ impl LightKind {
     pub fn is_near(&self) -> bool {
         matches!(self, Self::Point { .. } | Self::Spot { .. })
     }
+
+    /// Whether it comes from one direction, so that things stand in its way.
+    pub fn casts_shadows(&self) -> bool {
+        !matches!(self, Self::Ambient)
+    }
 }
 
 impl std::fmt::Display for LightKind {

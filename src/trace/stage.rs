@@ -1,0 +1,142 @@
+use super::origin::Origin;
+use super::ray::Ray;
+use super::tree::Tree;
+use crate::light::{Approach, Point};
+use crate::relativity::{ApparentMap, Motion, RestSky};
+use crate::scene::{Camera, Mesh};
+use glam::DVec3;
+use std::sync::Arc;
+use terrell_geodesic::{FourVector, Lorentz, Rest, Wide};
+
+/// Everything that can be hit, as one observer sees it at one moment.
+pub(super) struct Stage {
+    pub targets: Vec<Target>,
+    /// Maps between the rest frames of bodies, by their kinds of motion: to, from.
+    between: Vec<Vec<Lorentz<Rest, Rest>>>,
+}
+
+/// A body.
+pub(super) struct Target {
+    /// Its index in the scene.
+    pub body: usize,
+    pub mesh: Arc<Mesh>,
+    pub tree: Arc<Tree>,
+    pub map: ApparentMap,
+    pub sky: RestSky,
+    pub outline: Outline,
+    /// Which of the kinds of motion it has.
+    motion: usize,
+}
+
+/// A circle of the observer's sky with the whole body in it: the image of the sphere around it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outline {
+    pub axis: DVec3,
+    pub half_angle: f64,
+}
+
+impl Outline {
+    const EVERYWHERE: Self = Self { axis: DVec3::Z, half_angle: 4.0 };
+
+    /// Of a sphere in the rest frame. The plane that cuts its circle from the rest sky is a four-vector, and is boosted.
+    fn new(map: &ApparentMap, tree: &Tree, camera: &Camera, motion: &Motion) -> Self {
+        let middle = map.offset_rest(tree.centre);
+        let distance = middle.length();
+        let radius = tree.radius * (1.0 + 1e-9) + 1e-12 * distance;
+        if radius >= distance {
+            return Self::EVERYWHERE;
+        }
+        let sine = radius / distance;
+        let cosine = (1.0 - sine * sine).sqrt();
+        let axis = middle / distance;
+        let observer_from_rest =
+            camera.observer.observer_from_world::<Wide>() * motion.world_from_rest::<Wide>();
+        let plane = (observer_from_rest * FourVector::from_parts(-cosine, axis).widened()).rounded();
+        if !plane.xyz().is_finite() {
+            return Self::EVERYWHERE;
+        }
+        Self { axis: plane.xyz().normalize_or(DVec3::Z), half_angle: sine.atan2(-plane.t) + 1e-12 }
+    }
+
+    /// Whether a circle of directions and this one have any in common.
+    pub fn meets(&self, axis: DVec3, half_angle: f64) -> bool {
+        angle(self.axis, axis) <= self.half_angle + half_angle
+    }
+}
+
+impl Target {
+    /// A line of sight in the rest frame, with the same affine parameter.
+    #[inline]
+    pub fn rest_direction(&self, v: DVec3, length: f64) -> DVec3 {
+        let axis = self.sky.axis();
+        let along = v.dot(axis);
+        let rest = self.sky.boosted(v, length).along;
+        self.map.rotate_back(v + (rest - along) * axis)
+    }
+}
+
+/// Between unit vectors.
+pub(super) fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b))
+}
+
+/// Used again from ray to ray.
+#[derive(Default)]
+pub(super) struct Scratch {
+    stack: Vec<u32>,
+}
+
+impl Stage {
+    /// `trees` are those of the meshes.
+    pub fn new(bodies: Vec<(usize, Motion, Arc<Mesh>, Arc<Tree>)>, camera: &Camera, shadows: bool) -> Self {
+        let mut motions: Vec<Motion> = Vec::new();
+        let mut targets = Vec::with_capacity(bodies.len());
+        for (body, motion, mesh, tree) in bodies {
+            let kind = motions.iter().position(|m| m.celerity == motion.celerity).unwrap_or_else(|| {
+                motions.push(motion);
+                motions.len() - 1
+            });
+            let map = ApparentMap::new(&motion, &camera.observer);
+            let outline = Outline::new(&map, &tree, camera, &motion);
+            targets.push(Target { body, mesh, tree, sky: map.rest_sky(), map, outline, motion: kind });
+        }
+        let between = |to: &Motion| {
+            let rest_from_world = to.world_from_rest::<Wide>().inverse();
+            motions.iter().map(|from| (rest_from_world * from.world_from_rest::<Wide>()).rounded()).collect()
+        };
+        let between = if shadows { motions.iter().map(between).collect() } else { Vec::new() };
+        Self { targets, between }
+    }
+
+    /// Whether nothing stands on the way from a point of a target's triangle to a light.
+    pub fn is_free(
+        &self,
+        from: usize,
+        face: u32,
+        point: &Point,
+        approach: &Approach,
+        scratch: &mut Scratch,
+    ) -> bool {
+        let receiver = &self.targets[from];
+        let event = FourVector::from_parts(-point.offset.length(), point.offset);
+        !self.targets.iter().enumerate().any(|(index, target)| {
+            let (at, back, but) = if index == from {
+                (point.offset, approach.back.xyz(), Some(face))
+            } else if target.motion == receiver.motion {
+                // The same frame up to where its origin is.
+                (point.offset, approach.back.xyz(), None)
+            } else {
+                let map = self.between[target.motion][receiver.motion];
+                ((map * event).xyz(), (map * approach.back).xyz(), None)
+            };
+            let close = CLOSE * (at.length() + 1.0 / target.tree.scale) / back.length();
+            let far = if approach.ends { 1.0 } else { f64::INFINITY };
+            let ray = Ray { origin: Origin::at(&target.map, at), direction: back, range: [close, far], but };
+            ray.is_blocked(&target.tree, &mut scratch.stack)
+        })
+    }
+}
+
+/// Nearer to where a ray begins, of the distance from the observer and the size of what may be hit, it is the surface
+/// itself: its points are good to a few 10⁻¹⁶ of either, by one over the sine at which it is seen.
+const CLOSE: f64 = 1e-11;
