@@ -52,6 +52,7 @@ impl<'a> Facet<'a> {
     }
 
     /// A point of its plane, with the normal there.
+    #[inline]
     pub fn point(&self, at: DVec3) -> Point {
         let facing = self.normal();
         let normals = &self.mesh.normals;

@@ -1,5 +1,8 @@
 //! Rays of neighbouring pixels, which begin in one point, together.
 
+use super::lanes::Lanes;
+#[cfg(target_arch = "x86_64")]
+use super::lanes::x86;
 use super::origin::Origin;
 use super::tree::{Leaf, Node, Tree};
 use glam::DVec3;
@@ -7,8 +10,8 @@ use glam::DVec3;
 /// The most rays of a beam.
 pub(super) const RAYS: usize = 64;
 
-/// Rays the processor's vectors are filled with at a time.
-const LANES: usize = 8;
+/// The widest vectors there are.
+const WIDEST: usize = 8;
 
 /// Nothing found.
 pub(super) const NONE: u32 = u32::MAX;
@@ -30,37 +33,42 @@ pub(super) struct Beam {
     middle: [f64; 2],
     /// Least and greatest slopes.
     range: [[f64; 2]; 2],
-    lanes: Lanes,
+    rays: Rays,
     /// How many there are, filled up to whole vectors.
     count: usize,
     stack: Vec<(u32, f64)>,
-    pub tested: Tested,
-}
-
-/// How much work it was.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tested {
-    pub boxes: u64,
-    pub triangles: u64,
 }
 
 #[repr(align(64))]
-struct Lanes {
+struct Rays {
     /// Slopes from the middle.
     from_middle: [[f32; RAYS]; 2],
     /// 1/t of the nearest hit, t along the longest component.
     nearness: [f32; RAYS],
-    found: [u32; RAYS],
+    /// Number of the leaf, as bits.
+    found: [f32; RAYS],
 }
 
 /// A triangle as a beam meets it: functions c + a·u + b·v of slopes from the middle.
 struct Edges {
-    /// Positive inside, all three.
-    edges: [[f32; 3]; 3],
-    /// Where the edge itself belongs to the triangle 0, else the least number above.
-    least: [f32; 3],
+    edges: [Edge; 3],
     /// 1/t.
     nearness: [f32; 3],
+}
+
+struct Edge {
+    /// Positive inside.
+    function: [f32; 3],
+    /// Where the edge itself belongs to the triangle 0, else the least number above.
+    least: f32,
+}
+
+/// A ray from the origin of a beam.
+#[derive(Clone, Copy)]
+pub(super) struct Directed {
+    pub direction: DVec3,
+    /// 1/s of what it is known to hit already, s in units of the direction; 0 for nothing.
+    pub nearness: f64,
 }
 
 /// Hits that differ by less, relative, are compared in f64: f32 is good to a few 10⁻⁷.
@@ -74,15 +82,18 @@ impl Default for Beam {
             slopes: [[0.0; RAYS]; 2],
             middle: [0.0; 2],
             range: [[0.0; 2]; 2],
-            lanes: Lanes { from_middle: [[0.0; RAYS]; 2], nearness: [0.0; RAYS], found: [NONE; RAYS] },
+            rays: Rays {
+                from_middle: [[0.0; RAYS]; 2],
+                nearness: [0.0; RAYS],
+                found: [f32::from_bits(NONE); RAYS],
+            },
             count: 0,
             stack: Vec::new(),
-            tested: Tested::default(),
         }
     }
 }
 
-/// The longest component of a direction, and its sign: rays that agree in it can be one beam.
+/// The longest component of a direction, and whether it is negative: rays that agree in that can be one beam.
 #[inline]
 pub(super) fn facing(direction: DVec3) -> (usize, bool) {
     let size = direction.abs();
@@ -96,81 +107,78 @@ pub(super) fn facing(direction: DVec3) -> (usize, bool) {
     (longest, direction[longest] < 0.0)
 }
 
-/// a·b + c, in one step where the processor has one.
-#[inline(always)]
-fn fused<const FMA: bool>(a: f32, b: f32, c: f32) -> f32 {
-    if FMA { a.mul_add(b, c) } else { a * b + c }
-}
-
 impl Beam {
-    /// Makes it the beam of these rays, which all face the same way. `nearest` gives for each of them 1/s of what is
-    /// known to be hit by others, s in units of its direction; 0 for nothing.
-    pub fn aim(
-        &mut self,
-        (longest, backward): (usize, bool),
-        rays: impl Iterator<Item = (DVec3, f64)>,
-        tree: &Tree,
-        origin: &Origin<'_>,
-    ) {
-        let unit = tree.scale * inverse_unit(origin.place(tree).0);
+    /// Makes it the beam of these rays, which all face the same way.
+    pub fn aim(&mut self, way: (usize, bool), rays: &[Directed], tree: &Tree, origin: &Origin<'_>) {
+        let (longest, backward) = way;
+        let inverse_unit = 1.0 / (tree.scale * inverse_unit(origin.place(tree).0));
         self.order = [longest, (longest + 1) % 3, (longest + 2) % 3];
         self.sign = if backward { -1.0 } else { 1.0 };
-        self.range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        let mut count = 0;
-        for (direction, nearest) in rays {
-            let along = direction[longest].abs();
+        let [along, first, second] = self.order;
+        let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for (i, ray) in rays.iter().enumerate() {
+            let inverse = 1.0 / ray.direction[along].abs();
+            let slopes = [ray.direction[first] * inverse, ray.direction[second] * inverse];
             for k in 0..2 {
-                let slope = direction[self.order[k + 1]] / along;
-                self.slopes[k][count] = slope;
-                self.range[k] = [self.range[k][0].min(slope), self.range[k][1].max(slope)];
+                self.slopes[k][i] = slopes[k];
+                range[k] = [range[k][0].min(slopes[k]), range[k][1].max(slopes[k])];
             }
             // A little farther, so that what is as near is found, too, and can be compared exactly.
-            let nearness = nearest / (along * unit);
-            self.lanes.nearness[count] = (nearness * (1.0 - f64::from(CLOSE))) as f32;
-            self.lanes.found[count] = NONE;
-            count += 1;
+            let nearness = ray.nearness * inverse * inverse_unit;
+            self.rays.nearness[i] = (nearness * (1.0 - f64::from(CLOSE))) as f32;
         }
-        self.middle = self.range.map(|[low, high]| 0.5 * (low + high));
-        let whole = count.next_multiple_of(LANES);
-        for k in 0..2 {
-            for i in 0..count {
-                self.lanes.from_middle[k][i] = (self.slopes[k][i] - self.middle[k]) as f32;
-            }
-            self.lanes.from_middle[k][count..whole].fill(0.0);
-        }
+        let (count, whole) = (rays.len(), rays.len().next_multiple_of(WIDEST));
+        self.rays.found[..whole].fill(f32::from_bits(NONE));
         // They hit nothing.
-        self.lanes.nearness[count..whole].fill(f32::INFINITY);
-        self.count = whole;
-        for [low, high] in &mut self.range {
-            *low -= 4.0 * f64::EPSILON * (1.0 + low.abs());
-            *high += 4.0 * f64::EPSILON * (1.0 + high.abs());
+        self.rays.nearness[count..whole].fill(f32::INFINITY);
+        for (k, [low, high]) in range.into_iter().enumerate() {
+            let middle = 0.5 * (low + high);
+            let from_middle = &mut self.rays.from_middle[k];
+            for (from, slope) in from_middle[..count].iter_mut().zip(&self.slopes[k]) {
+                *from = (slope - middle) as f32;
+            }
+            from_middle[count..whole].fill(0.0);
+            self.middle[k] = middle;
+            let rounding = 4.0 * f64::EPSILON;
+            self.range[k] = [low - rounding * (1.0 + low.abs()), high + rounding * (1.0 + high.abs())];
         }
+        self.count = whole;
     }
 
     /// What the ray of this number hit: a leaf of the tree.
     pub fn found(&self, ray: usize) -> u32 {
-        self.lanes.found[ray]
+        self.rays.found[ray].to_bits()
     }
 
-    /// Looks for the nearest triangle for each ray.
+    /// Looks for the nearest triangle for each ray; with AVX2 if `vectors` and there is such.
     pub fn trace(&mut self, tree: &Tree, origin: &Origin<'_>, vectors: bool) {
         #[cfg(target_arch = "x86_64")]
-        if vectors && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-            // SAFETY: the processor has both.
-            return unsafe { self.trace_avx2(tree, origin) };
+        {
+            if vectors && x86::has_avx2() {
+                // SAFETY: the processor has both.
+                unsafe { self.trace_avx2(tree, origin) }
+            } else {
+                // SAFETY: every x86-64 processor has SSE2.
+                unsafe { self.trace_with::<x86::Sse2>(tree, origin) }
+            }
         }
-        let _ = vectors;
-        self.trace_with::<false>(tree, origin);
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            let _ = vectors;
+            // SAFETY: needs nothing.
+            unsafe { self.trace_with::<super::lanes::One>(tree, origin) }
+        }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
     fn trace_avx2(&mut self, tree: &Tree, origin: &Origin<'_>) {
-        self.trace_with::<true>(tree, origin);
+        // SAFETY: the caller has made sure.
+        unsafe { self.trace_with::<x86::Avx2>(tree, origin) }
     }
 
     #[inline(always)]
-    fn trace_with<const FMA: bool>(&mut self, tree: &Tree, origin: &Origin<'_>) {
+    unsafe fn trace_with<L: Lanes>(&mut self, tree: &Tree, origin: &Origin<'_>) {
         let (place, slack) = origin.place(tree);
         let unit = tree.scale * inverse_unit(place);
         let boxes = Boxes::new(self, place, slack);
@@ -186,9 +194,9 @@ impl Beam {
             }
             let node = &tree.nodes[index as usize];
             if node.count == 0 {
-                self.tested.boxes += 2;
                 let first = node.first;
-                let [a, b] = [0, 1].map(|k| boxes.enters(&tree.nodes[(first + k) as usize]));
+                let a = boxes.enters(&tree.nodes[first as usize]);
+                let b = boxes.enters(&tree.nodes[first as usize + 1]);
                 match (a, b) {
                     // The nearer one on top.
                     (Some(a), Some(b)) if a <= b => stack.extend([(first + 1, b), (first, a)]),
@@ -201,11 +209,14 @@ impl Beam {
             }
             let mut any = false;
             for number in node.first..node.first + node.count {
-                self.tested.triangles += 1;
                 let leaf = &tree.leaves[number as usize];
-                let corners = leaf.corners.map(|c| self.turned(origin.to(c) * unit));
-                let Some(edges) = self.edges(corners, leaf.one_sided) else { continue };
-                let (nearer, doubtful) = self.meet::<FMA>(&edges, number);
+                let [a, b, c] = &leaf.corners;
+                let a = self.turned(origin.to(*a) * unit);
+                let b = self.turned(origin.to(*b) * unit);
+                let c = self.turned(origin.to(*c) * unit);
+                let Some(edges) = self.edges(a, b, c, leaf.one_sided) else { continue };
+                // SAFETY: as this function.
+                let (nearer, doubtful) = unsafe { self.meet::<L>(&edges, number) };
                 any |= nearer;
                 if doubtful {
                     any |= self.settle(tree, origin, unit, &edges, number);
@@ -221,7 +232,13 @@ impl Beam {
     /// The farthest any ray still has to look, in the tree's units.
     #[inline(always)]
     fn farthest(&self, place: DVec3) -> f64 {
-        let least = self.lanes.nearness[..self.count].iter().copied().fold(f32::INFINITY, f32::min);
+        let mut least = [f32::INFINITY; WIDEST];
+        for values in self.rays.nearness[..self.count].chunks_exact(WIDEST) {
+            for (least, value) in least.iter_mut().zip(values) {
+                *least = if *value < *least { *value } else { *least };
+            }
+        }
+        let least = least.into_iter().fold(f32::INFINITY, |a, b| if b < a { b } else { a });
         // f32 may be off by some 10⁻⁷.
         (1.0 + f64::from(CLOSE)) / (f64::from(least) * inverse_unit(place))
     }
@@ -235,85 +252,91 @@ impl Beam {
     /// Of corners as [`turned`](Self::turned), which keeps or changes their winding with the sign; none for a triangle
     /// seen edge-on or from the back it does not have, or one no ray of the beam can hit.
     #[inline(always)]
-    fn edges(&self, [a, b, c]: [DVec3; 3], one_sided: bool) -> Option<Edges> {
-        let planes = [b.cross(c), c.cross(a), a.cross(b)];
-        let volume = a.dot(planes[0]);
+    fn edges(&self, a: DVec3, b: DVec3, c: DVec3, one_sided: bool) -> Option<Edges> {
+        let opposite_a = b.cross(c);
+        let volume = a.dot(opposite_a);
         // Also false for NaN.
-        if !(volume.abs() > 0.0 && volume < f64::INFINITY) {
-            return None;
-        }
-        if one_sided && volume * self.sign >= 0.0 {
+        if !(volume.abs() > 0.0 && volume < f64::INFINITY) || (one_sided && volume * self.sign >= 0.0) {
             return None;
         }
         let flip = if volume < 0.0 { -1.0 } else { 1.0 };
         let [u0, v0] = self.middle;
-        let half = [0, 1].map(|k| 0.5 * (self.range[k][1] - self.range[k][0]));
-        let mut edges = [[0.0; 3]; 3];
-        let mut least = [0.0; 3];
-        for (i, plane) in planes.iter().enumerate() {
-            let m = *plane * flip;
+        let half_u = 0.5 * (self.range[0][1] - self.range[0][0]);
+        let half_v = 0.5 * (self.range[1][1] - self.range[1][0]);
+        let plane = |m: DVec3| {
+            let m = m * flip;
             let middle = m.x + (m.y * u0 + m.z * v0);
             // By more than f32 leaves over.
-            if middle + (m.y.abs() * half[0] + m.z.abs() * half[1]) * 1.000_001 < 0.0 {
-                return None;
-            }
-            edges[i] = [middle as f32, m.y as f32, m.z as f32];
-            least[i] = if owns(m) { 0.0 } else { f32::from_bits(1) };
-        }
+            let most = middle + (m.y.abs() * half_u + m.z.abs() * half_v) * 1.000_001;
+            let least = if owns(m) { 0.0 } else { f32::from_bits(1) };
+            (most >= 0.0).then_some(Edge { function: [middle as f32, m.y as f32, m.z as f32], least })
+        };
+        let edges = [plane(opposite_a)?, plane(c.cross(a))?, plane(a.cross(b))?];
         let normal = (b - a).cross(c - a);
         let over = 1.0 / normal.dot(a);
         if !over.is_finite() {
             return None;
         }
-        let nearness = [normal.x + (normal.y * u0 + normal.z * v0), normal.y, normal.z];
-        Some(Edges { edges, least, nearness: nearness.map(|n| (n * over) as f32) })
+        let middle = normal.x + (normal.y * u0 + normal.z * v0);
+        let nearness = [(middle * over) as f32, (normal.y * over) as f32, (normal.z * over) as f32];
+        Some(Edges { edges, nearness })
     }
 
     /// Tests all rays; whether any is hit nearer than before, and whether any cannot be told in f32.
     #[inline(always)]
-    fn meet<const FMA: bool>(&mut self, triangle: &Edges, number: u32) -> (bool, bool) {
-        let Lanes { from_middle: [du, dv], nearness, found } = &mut self.lanes;
-        let (mut any, mut doubtful) = (0u32, 0u32);
-        let count = self.count;
-        let rays = du[..count].chunks_exact(LANES).zip(dv[..count].chunks_exact(LANES));
-        let hits = nearness[..count].chunks_exact_mut(LANES).zip(found[..count].chunks_exact_mut(LANES));
-        for ((du, dv), (nearness, found)) in rays.zip(hits) {
-            for i in 0..LANES {
-                let at = |[c, u, v]: [f32; 3]| fused::<FMA>(u, du[i], fused::<FMA>(v, dv[i], c));
-                let inside = u32::from(at(triangle.edges[0]) >= triangle.least[0])
-                    & u32::from(at(triangle.edges[1]) >= triangle.least[1])
-                    & u32::from(at(triangle.edges[2]) >= triangle.least[2]);
-                let near = at(triangle.nearness);
-                let known = nearness[i];
-                let nearer = inside & u32::from(near > known * (1.0 + CLOSE));
-                let close = inside & u32::from(near >= known * (1.0 - CLOSE)) & (1 - nearer);
-                nearness[i] = if nearer != 0 { near } else { known };
-                found[i] = if nearer != 0 { number } else { found[i] };
-                any |= nearer;
-                doubtful |= close;
+    unsafe fn meet<L: Lanes>(&mut self, triangle: &Edges, number: u32) -> (bool, bool) {
+        let Rays { from_middle: [du, dv], nearness, found } = &mut self.rays;
+        // SAFETY: as this function; there are whole vectors of rays.
+        unsafe {
+            let splat = |f: &[f32; 3]| [L::splat(f[0]), L::splat(f[1]), L::splat(f[2])];
+            let [e0, e1, e2] = &triangle.edges;
+            let least = [L::splat(e0.least), L::splat(e1.least), L::splat(e2.least)];
+            let [e0, e1, e2] = [splat(&e0.function), splat(&e1.function), splat(&e2.function)];
+            let near = splat(&triangle.nearness);
+            let (above, below) = (L::splat(1.0 + CLOSE), L::splat(1.0 - CLOSE));
+            let number = L::splat(f32::from_bits(number));
+            let (mut any, mut doubtful) = (0, 0);
+            for i in (0..self.count).step_by(L::COUNT) {
+                let (u, v) = (L::load(&du[i..]), L::load(&dv[i..]));
+                let inside = at(&e0, u, v)
+                    .at_least(least[0])
+                    .and(at(&e1, u, v).at_least(least[1]))
+                    .and(at(&e2, u, v).at_least(least[2]));
+                if inside.bits() == 0 {
+                    continue;
+                }
+                let known = L::load(&nearness[i..]);
+                let near = at(&near, u, v);
+                let nearer = inside.and(near.above(known.mul(above)));
+                let close = inside.and(near.at_least(known.mul(below))).without(nearer);
+                nearer.choose(near, known).store(&mut nearness[i..]);
+                nearer.choose(number, L::load(&found[i..])).store(&mut found[i..]);
+                any |= nearer.bits();
+                doubtful |= close.bits();
             }
+            (any != 0, doubtful != 0)
         }
-        (any != 0, doubtful != 0)
     }
 
     /// For rays that two triangles are as near to as f32 can tell: compares them in f64.
     #[cold]
+    #[inline(never)]
     fn settle(&mut self, tree: &Tree, origin: &Origin<'_>, unit: f64, triangle: &Edges, number: u32) -> bool {
         let mut any = false;
         for i in 0..self.count {
-            let [du, dv] = self.lanes.from_middle.map(|d| f64::from(d[i]));
+            let [du, dv] = self.rays.from_middle.map(|d| f64::from(d[i]));
             let at = |[c, u, v]: [f32; 3]| f64::from(u) * du + (f64::from(v) * dv + f64::from(c));
-            let inside = (0..3).all(|k| at(triangle.edges[k]) >= f64::from(triangle.least[k]));
-            let known = f64::from(self.lanes.nearness[i]);
+            let inside = triangle.edges.iter().all(|e| at(e.function) >= f64::from(e.least));
+            let known = f64::from(self.rays.nearness[i]);
             if !inside || (at(triangle.nearness) - known).abs() > 2.0 * f64::from(CLOSE) * known {
                 continue;
             }
             let exact = |number: u32| self.nearness(&tree.leaves[number as usize], origin, unit, i);
-            let (new, old) = (exact(number), self.lanes.found[i]);
             let face = |number: u32| tree.leaves[number as usize].face;
+            let (new, old) = (exact(number), self.found(i));
             if old == NONE || is_before((new, face(number)), (exact(old), face(old))) {
-                self.lanes.nearness[i] = self.lanes.nearness[i].max(new as f32);
-                self.lanes.found[i] = number;
+                self.rays.nearness[i] = self.rays.nearness[i].max(new as f32);
+                self.rays.found[i] = f32::from_bits(number);
                 any = true;
             }
         }
@@ -326,6 +349,16 @@ impl Beam {
         let normal = (b - a).cross(c - a);
         normal.dot(DVec3::new(1.0, self.slopes[0][ray], self.slopes[1][ray])) / normal.dot(a)
     }
+}
+
+/// c + a·u + b·v.
+///
+/// # Safety
+/// As the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn at<L: Lanes>([c, a, b]: &[L; 3], u: L, v: L) -> L {
+    // SAFETY: as this function.
+    unsafe { a.mul_add(u, b.mul_add(v, *c)) }
 }
 
 /// Whether a hit, by 1/s, is the one that is seen of two; where both are in one place, the first of the mesh is.
@@ -359,9 +392,10 @@ pub(super) fn inverse_unit(place: DVec3) -> f64 {
 struct Boxes {
     order: [usize; 3],
     backward: bool,
-    /// In the beam's order, the tree's units.
-    place: [f64; 3],
-    slack: f64,
+    /// Where the rays begin, in the beam's order and the tree's units.
+    low: [f64; 3],
+    /// As `low`; both a little outward.
+    high: [f64; 3],
     range: [[f64; 2]; 2],
 }
 
@@ -370,8 +404,8 @@ impl Boxes {
         Self {
             order: beam.order,
             backward: beam.sign < 0.0,
-            place: beam.order.map(|k| place[k]),
-            slack,
+            low: beam.order.map(|k| place[k] + slack),
+            high: beam.order.map(|k| place[k] - slack),
             range: beam.range,
         }
     }
@@ -379,24 +413,18 @@ impl Boxes {
     /// How near along the longest component a box begins; none if no ray can meet it.
     #[inline(always)]
     fn enters(&self, node: &Node) -> Option<f64> {
-        let side = |i: usize| {
-            let k = self.order[i];
-            let low = f64::from(node.min[k]) - self.place[i] - self.slack;
-            let high = f64::from(node.max[k]) - self.place[i] + self.slack;
-            [low, high]
-        };
-        let [low, high] = side(0);
-        let [near, far] = if self.backward { [-high, -low] } else { [low, high] };
+        let low = |i: usize| f64::from(node.min[self.order[i]]) - self.low[i];
+        let high = |i: usize| f64::from(node.max[self.order[i]]) - self.high[i];
+        let (near, far) = if self.backward { (-high(0), -low(0)) } else { (low(0), high(0)) };
         if far < 0.0 {
             return None;
         }
         let near = near.max(0.0);
         for k in 0..2 {
-            let [low, high] = side(k + 1);
             let [least, greatest] = self.range[k];
-            let least = if least >= 0.0 { least * near } else { least * far };
-            let greatest = if greatest >= 0.0 { greatest * far } else { greatest * near };
-            if high < least || low > greatest {
+            let least = least * if least >= 0.0 { near } else { far };
+            let greatest = greatest * if greatest >= 0.0 { far } else { near };
+            if high(k + 1) < least || low(k + 1) > greatest {
                 return None;
             }
         }

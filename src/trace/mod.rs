@@ -8,7 +8,9 @@
 //! It finds the point of the surface otherwise than [`raster`](crate::raster) does, and knows shadows; all else is the same.
 
 mod beam;
+mod lanes;
 mod origin;
+mod packet;
 mod ray;
 mod stage;
 mod tile;

@@ -2,7 +2,8 @@
 
 use super::beam::{inverse_unit, owns};
 use super::origin::Origin;
-use super::tree::{Node, Tree};
+use super::tree::{Leaf, Node, Tree};
+use crate::relativity::ApparentMap;
 use glam::DVec3;
 
 /// A ray in the rest frame of a body: origin + s·direction.
@@ -25,7 +26,12 @@ pub(super) struct Hit {
     pub face: u32,
 }
 
-impl Ray<'_> {
+impl<'a> Ray<'a> {
+    /// One that hits nothing.
+    pub fn nowhere(map: &'a ApparentMap) -> Self {
+        Self { origin: Origin::of_observer(map), direction: DVec3::X, range: [0.0; 2], but: None }
+    }
+
     /// Whether there is any triangle.
     pub fn is_blocked(&self, tree: &Tree, stack: &mut Vec<u32>) -> bool {
         let mut blocked = false;
@@ -34,6 +40,17 @@ impl Ray<'_> {
             None
         });
         blocked
+    }
+
+    /// Whether it hits a triangle of a leaf.
+    #[inline]
+    pub fn hits(&self, leaf: &Leaf) -> bool {
+        if self.but == Some(leaf.face) {
+            return false;
+        }
+        let [a, b, c] = &leaf.corners;
+        let corners = [self.origin.to(*a), self.origin.to(*b), self.origin.to(*c)];
+        meet(corners, self.direction).is_some_and(|at| at > self.range[0] && at < self.range[1])
     }
 
     /// Shows all triangles hit within the range, roughly the nearest first, until there is none in a range that `seen`

@@ -1,7 +1,8 @@
 use super::origin::Origin;
+use super::packet::{PACKET, Packet};
 use super::ray::Ray;
 use super::tree::Tree;
-use crate::light::{Approach, Point};
+use crate::light::Approach;
 use crate::relativity::{ApparentMap, Motion, RestSky};
 use crate::scene::{Camera, Mesh};
 use glam::DVec3;
@@ -76,14 +77,8 @@ impl Target {
 }
 
 /// Between unit vectors.
-pub(super) fn angle(a: DVec3, b: DVec3) -> f64 {
+fn angle(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
-}
-
-/// Used again from ray to ray.
-#[derive(Default)]
-pub(super) struct Scratch {
-    stack: Vec<u32>,
 }
 
 impl Stage {
@@ -108,33 +103,55 @@ impl Stage {
         Self { targets, between }
     }
 
-    /// Whether nothing stands on the way from a point of a target's triangle to a light.
-    pub fn is_free(
-        &self,
-        from: usize,
-        face: u32,
-        point: &Point,
-        approach: &Approach,
-        scratch: &mut Scratch,
-    ) -> bool {
-        let receiver = &self.targets[from];
-        let event = FourVector::from_parts(-point.offset.length(), point.offset);
-        !self.targets.iter().enumerate().any(|(index, target)| {
-            let (at, back, but) = if index == from {
-                (point.offset, approach.back.xyz(), Some(face))
-            } else if target.motion == receiver.motion {
-                // The same frame up to where its origin is.
-                (point.offset, approach.back.xyz(), None)
-            } else {
-                let map = self.between[target.motion][receiver.motion];
-                ((map * event).xyz(), (map * approach.back).xyz(), None)
-            };
-            let close = CLOSE * (at.length() + 1.0 / target.tree.scale) / back.length();
-            let far = if approach.ends { 1.0 } else { f64::INFINITY };
-            let ray = Ray { origin: Origin::at(&target.map, at), direction: back, range: [close, far], but };
-            ray.is_blocked(&target.tree, &mut scratch.stack)
-        })
+    /// Which of some ways to lights, at most [`PACKET`], something stands in: a bit for each.
+    pub fn blocked(&self, ways: &[Way], packet: &mut Packet, vectors: bool) -> u32 {
+        let mut blocked = 0;
+        let all = (1 << ways.len()) - 1;
+        for (index, target) in self.targets.iter().enumerate() {
+            let ray = |way: &Way| self.ray(way, index, target);
+            let mut rays = [Ray::nowhere(&target.map); PACKET];
+            for (to, way) in rays.iter_mut().zip(ways) {
+                *to = ray(way);
+            }
+            blocked |= packet.blocked(&rays[..ways.len()], &target.tree, vectors);
+            if blocked == all {
+                break;
+            }
+        }
+        blocked
     }
+
+    /// A way to a light in the rest frame of a target.
+    fn ray<'a>(&self, way: &Way, index: usize, target: &'a Target) -> Ray<'a> {
+        let receiver = &self.targets[way.from];
+        let (at, back) = if target.motion == receiver.motion {
+            // The same frame up to where its origin is.
+            (way.point, way.approach.back.xyz())
+        } else {
+            let event = FourVector::from_parts(-way.point.length(), way.point);
+            let map = &self.between[target.motion][receiver.motion];
+            ((*map * event).xyz(), (*map * way.approach.back).xyz())
+        };
+        let close = CLOSE * (at.length() + 1.0 / target.tree.scale) / back.length();
+        Ray {
+            origin: Origin::at(&target.map, at),
+            direction: back,
+            range: [close, if way.approach.ends { 1.0 } else { f64::INFINITY }],
+            but: (index == way.from).then_some(way.face),
+        }
+    }
+}
+
+/// The way from a point of a triangle to a light.
+#[derive(Clone, Copy)]
+pub(super) struct Way {
+    /// Index of the target the triangle is of.
+    pub from: usize,
+    /// Number of the triangle in the mesh.
+    pub face: u32,
+    /// From the observer, in the target's rest frame.
+    pub point: DVec3,
+    pub approach: Approach,
 }
 
 /// Nearer to where a ray begins, of the distance from the observer and the size of what may be hit, it is the surface

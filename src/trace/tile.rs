@@ -1,6 +1,7 @@
-use super::beam::{Beam, NONE, RAYS, SAME, facing};
+use super::beam::{Beam, Directed, NONE, RAYS, SAME, facing};
 use super::origin::Origin;
-use super::stage::{Scratch, Stage, angle};
+use super::packet::{PACKET, Packet};
+use super::stage::{Stage, Target, Way};
 use crate::film::Rows;
 use crate::light::{Facet, Point, SeenShading};
 use crate::scene::Lens;
@@ -13,9 +14,15 @@ pub(super) const SIDE: u32 = 8;
 #[derive(Default)]
 pub(super) struct Tile {
     beam: Beam,
-    scratch: Scratch,
+    packet: Packet,
     sights: Vec<Sight>,
-    rays: Vec<(usize, DVec3)>,
+    rays: Vec<Directed>,
+    /// Of which lines of sight they are.
+    numbers: Vec<usize>,
+    /// What of the lines of sight may be lit.
+    points: Vec<(usize, Point)>,
+    ways: Vec<(usize, Way)>,
+    eight: Vec<Way>,
     lit: Vec<u64>,
     count: Count,
 }
@@ -51,7 +58,10 @@ struct Sight {
     /// 1/s of the nearest hit, in units of the direction; 0 for none.
     nearness: f64,
     target: usize,
-    face: u32,
+    /// Number of the triangle in the target's tree; [`NONE`] for no hit.
+    leaf: u32,
+    /// The direction in the target's rest frame.
+    rest: DVec3,
 }
 
 /// What is to be drawn.
@@ -109,7 +119,8 @@ impl Tile {
                     length: direction.length(),
                     nearness: 0.0,
                     target: 0,
-                    face: NONE,
+                    leaf: NONE,
+                    rest: DVec3::ZERO,
                 });
             }
         }
@@ -120,37 +131,64 @@ impl Tile {
     fn find(&mut self, job: &Job<'_>) {
         let middle: DVec3 = self.sights.iter().map(|s| s.direction / s.length).sum();
         let axis = middle.normalize_or(DVec3::Z);
-        let half_angle = self.sights.iter().map(|s| angle(axis, s.direction / s.length)).fold(0.0, f64::max);
+        let chord = |s: &Sight| (s.direction / s.length - axis).length_squared();
+        let chord = self.sights.iter().map(chord).fold(0.0, f64::max).sqrt();
+        let half_angle = 2.0 * (0.5 * chord).min(1.0).asin();
         for (index, target) in job.stage.targets.iter().enumerate() {
             if !target.outline.meets(axis, half_angle) {
                 continue;
             }
             self.rays.clear();
-            let rest = |s: &Sight| target.rest_direction(s.direction, s.length);
-            self.rays.extend(self.sights.iter().map(rest).enumerate());
-            let origin = Origin::of_observer(&target.map);
-            // Those that face the same way at a time; mostly all.
-            while let Some(&(_, first)) = self.rays.first() {
-                let way = facing(first);
-                let alike = self.rays.iter().filter(|(_, d)| facing(*d) == way);
-                let rays = alike.clone().map(|(i, d)| (*d, self.sights[*i].nearness));
-                self.beam.aim(way, rays, &target.tree, &origin);
-                self.beam.trace(&target.tree, &origin, job.vectors);
-                for (number, (i, direction)) in alike.enumerate() {
-                    let found = self.beam.found(number);
-                    if found == NONE {
-                        continue;
-                    }
-                    let leaf = &target.tree.leaves[found as usize];
-                    let [a, b, c] = leaf.corners.map(|c| origin.to(c));
-                    let normal = (b - a).cross(c - a);
-                    let nearness = normal.dot(*direction) / normal.dot(a);
-                    let sight = &mut self.sights[*i];
-                    if nearness > sight.nearness * (1.0 + SAME) {
-                        *sight = Sight { nearness, target: index, face: leaf.face, ..*sight };
-                    }
+            let rest = |s: &Sight| Directed {
+                direction: target.rest_direction(s.direction, s.length),
+                nearness: s.nearness,
+            };
+            self.rays.extend(self.sights.iter().map(rest));
+            let Some(first) = self.rays.first() else { return };
+            let way = facing(first.direction);
+            if self.rays.iter().all(|ray| facing(ray.direction) == way) {
+                self.numbers.clear();
+                self.numbers.extend(0..self.rays.len());
+                self.follow(job, index, way);
+                continue;
+            }
+            // Those that face the same way at a time.
+            let all = std::mem::take(&mut self.rays);
+            for way in (0..3).flat_map(|k| [(k, false), (k, true)]) {
+                self.numbers.clear();
+                self.numbers.extend((0..all.len()).filter(|i| facing(all[*i].direction) == way));
+                self.rays.clear();
+                self.rays.extend(self.numbers.iter().map(|i| all[*i]));
+                if !self.rays.is_empty() {
+                    self.follow(job, index, way);
                 }
-                self.rays.retain(|(_, d)| facing(*d) != way);
+            }
+        }
+    }
+
+    /// What of one body the rays hit, which are those of the lines of sight in `numbers`.
+    fn follow(&mut self, job: &Job<'_>, index: usize, way: (usize, bool)) {
+        let target = &job.stage.targets[index];
+        let origin = Origin::of_observer(&target.map);
+        self.beam.aim(way, &self.rays, &target.tree, &origin);
+        self.beam.trace(&target.tree, &origin, job.vectors);
+        // The plane of the triangle met last: N, and its distance times |N|.
+        let (mut last, mut normal, mut over) = (NONE, DVec3::ZERO, 0.0);
+        for (number, (ray, sight)) in self.rays.iter().zip(&self.numbers).enumerate() {
+            let found = self.beam.found(number);
+            if found == NONE {
+                continue;
+            }
+            let leaf = &target.tree.leaves[found as usize];
+            if found != last {
+                let [a, b, c] = leaf.corners.map(|c| origin.to(c));
+                normal = (b - a).cross(c - a);
+                (last, over) = (found, normal.dot(a));
+            }
+            let nearness = normal.dot(ray.direction) / over;
+            let sight = &mut self.sights[*sight];
+            if nearness > sight.nearness * (1.0 + SAME) {
+                *sight = Sight { nearness, target: index, leaf: found, rest: ray.direction, ..*sight };
             }
         }
     }
@@ -164,22 +202,33 @@ impl Tile {
             return;
         }
         debug_assert!(self.sights.len() <= RAYS);
+        self.points.clear();
         for (number, sight) in self.sights.iter().enumerate() {
-            if sight.face == NONE {
+            if sight.leaf == NONE {
                 continue;
             }
-            let target = &job.stage.targets[sight.target];
-            if !job.shading.is_lit(target.body, target.mesh.material_index(sight.face as usize)) {
-                continue;
+            let (target, facet, at) = sight.meets(job.stage);
+            if job.shading.is_lit(target.body, target.mesh.material_index(facet.face())) {
+                self.points.push((number, facet.point(at)));
             }
-            let (facet, at) = sight.meets(job.stage);
-            let point: Point = facet.point(at);
-            for light in 0..lights {
-                let Some(approach) = job.shading.approach(target.body, light, &point) else { continue };
-                self.count.shadow += 1;
-                if !job.stage.is_free(sight.target, sight.face, &point, &approach, &mut self.scratch) {
-                    self.count.blocked += 1;
-                    self.lit[light] &= !(1 << number);
+        }
+        for light in 0..lights {
+            self.ways.clear();
+            for (number, point) in &self.points {
+                let sight = &self.sights[*number];
+                let target = &job.stage.targets[sight.target];
+                let Some(approach) = job.shading.approach(target.body, light, point) else { continue };
+                let face = target.tree.leaves[sight.leaf as usize].face;
+                self.ways.push((*number, Way { from: sight.target, face, point: point.offset, approach }));
+            }
+            self.count.shadow += self.ways.len() as u64;
+            for ways in self.ways.chunks(PACKET) {
+                self.eight.clear();
+                self.eight.extend(ways.iter().map(|(_, way)| *way));
+                let blocked = job.stage.blocked(&self.eight, &mut self.packet, job.vectors);
+                self.count.blocked += u64::from(blocked.count_ones());
+                for (i, (number, _)) in ways.iter().enumerate() {
+                    self.lit[light] &= !(u64::from(blocked >> i & 1) << number);
                 }
             }
         }
@@ -190,11 +239,10 @@ impl Tile {
         // Each of many samples stands for a part of the pixel.
         let spread = f64::from(weight.sqrt());
         for (number, sight) in self.sights.iter().enumerate() {
-            if sight.face == NONE {
+            if sight.leaf == NONE {
                 continue;
             }
-            let target = &job.stage.targets[sight.target];
-            let (facet, at) = sight.meets(job.stage);
+            let (target, facet, at) = sight.meets(job.stage);
             let doppler = sight.length / target.sky.boosted(sight.direction, sight.length).length;
             let sights = || {
                 // A look along the line of sight itself where there is no neighbour: as sharp as can be.
@@ -217,19 +265,21 @@ impl Tile {
                 rows.distance[i] = (sight.length / sight.nearness) as f32;
                 rows.doppler[i] = doppler as f32;
                 rows.body[i] = target.body as i32;
-                rows.face[i] = sight.face as i32;
+                rows.face[i] = facet.face() as i32;
             }
         }
     }
 }
 
 impl Sight {
-    /// The triangle, and where on it, both from the observer in the rest frame.
-    fn meets<'a>(&self, stage: &'a Stage) -> (Facet<'a>, DVec3) {
+    /// The body, the triangle, and where on it, both from the observer in the rest frame.
+    #[inline]
+    fn meets<'a>(&self, stage: &'a Stage) -> (&'a Target, Facet<'a>, DVec3) {
         let target = &stage.targets[self.target];
-        let face = self.face as usize;
-        let corners = target.mesh.corners(face).map(|c| target.map.offset_rest(c));
-        let at = target.rest_direction(self.direction, self.length) / self.nearness;
-        (Facet::new(&target.mesh, face, corners), at)
+        let leaf = &target.tree.leaves[self.leaf as usize];
+        let [a, b, c] = &leaf.corners;
+        let map = &target.map;
+        let corners = [map.offset_rest(*a), map.offset_rest(*b), map.offset_rest(*c)];
+        (target, Facet::new(&target.mesh, leaf.face as usize, corners), self.rest / self.nearness)
     }
 }

@@ -138,11 +138,12 @@ impl<To, Mid, From, S: Real> Mul<Lorentz<Mid, From, S>> for Lorentz<To, Mid, S> 
 impl<To, From, S: Real> Mul<FourVector<From, S>> for Lorentz<To, From, S> {
     type Output = FourVector<To, S>;
 
+    #[inline]
     fn mul(self, vector: FourVector<From, S>) -> Self::Output {
         let [x, y, z] = vector.space;
         let component = |row: [S; 4]| row[0] * vector.t + row[1] * x + row[2] * y + row[3] * z;
-        let [t, x, y, z] = self.rows.map(component);
-        FourVector::new(t, x, y, z)
+        let [t_row, x_row, y_row, z_row] = self.rows;
+        FourVector::new(component(t_row), component(x_row), component(y_row), component(z_row))
     }
 }
 
