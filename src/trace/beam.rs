@@ -431,3 +431,100 @@ impl Boxes {
         Some(near)
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::ray::meet;
+    use super::*;
+    use crate::relativity::{ApparentMap, Motion};
+    use crate::scene::Mesh;
+    use terrell_geodesic::{Celerity, Event, Tetrad};
+
+    pub fn random(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 33) as f64 + 0.5) / f64::from(1u32 << 31)
+        }
+    }
+
+    /// Triangles anywhere in a box, small and large, some without area.
+    pub fn soup(count: usize, scale: f64, random: &mut impl FnMut() -> f64) -> Mesh {
+        let mut vertices = Vec::new();
+        for i in 0..count {
+            let mut point = |reach: f64| DVec3::from_array([0; 3].map(|_| random() - 0.5)) * reach * scale;
+            let (middle, size) = (point(2.0), [1.0, 0.1, 0.01][i % 3]);
+            let a = middle + point(size);
+            let b = middle + point(size);
+            vertices.extend([a, b, if i % 17 == 16 { a } else { middle + point(size) }]);
+        }
+        Mesh::new(&vertices, (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+    }
+
+    /// Observers near, far and fast.
+    pub fn maps(scale: f64) -> Vec<ApparentMap> {
+        [(0.0, [0.3, 0.1, -0.2]), (2.0, [4.0, 1.0, 2.0]), (1e3, [-30.0, 200.0, 7.0])]
+            .into_iter()
+            .map(|(u, place)| {
+                let celerity = Celerity::new(DVec3::new(u, -0.5 * u, 0.1 * u)).unwrap();
+                let at = DVec3::from_array(place) * scale;
+                ApparentMap::new(
+                    &Motion { celerity, origin: Event::at(0.0, at) },
+                    &Tetrad::of_world(Event::origin()),
+                )
+            })
+            .collect()
+    }
+
+    /// Beams, whatever the vectors, hit what every triangle tried in f64 says.
+    #[test]
+    fn beams_hit_what_rays_hit() {
+        let mut random = random(3);
+        let mut beam = Beam::default();
+        let [mut hits, mut differ] = [0; 2];
+        for (count, scale) in [(1, 1.0), (40, 1e-20), (300, 1.0), (100, 1e12)] {
+            let mesh = soup(count, scale, &mut random);
+            let tree = Tree::new(&mesh);
+            for map in maps(scale) {
+                let origin = Origin::of_observer(&map);
+                for _ in 0..40 {
+                    let mut point = |reach: f64| DVec3::from_array([0; 3].map(|_| random() - 0.5)) * reach;
+                    let towards = origin.to(point(2.0) * scale) / scale;
+                    let width = [0.5, 0.02, 1e-5][hits % 3];
+                    let rays: Vec<Directed> = (0..50)
+                        .map(|_| Directed { direction: towards + point(width), nearness: 0.0 })
+                        .filter(|ray| facing(ray.direction) == facing(towards))
+                        .collect();
+                    let expected: Vec<Option<(f64, u32)>> = rays
+                        .iter()
+                        .map(|ray| {
+                            let hit = |leaf: &Leaf| {
+                                let corners = leaf.corners.map(|c| origin.to(c) / scale);
+                                let at = meet(corners, ray.direction).filter(|at| *at > 0.0)?;
+                                Some((at, leaf.face))
+                            };
+                            tree.leaves.iter().filter_map(hit).min_by(|a, b| a.0.total_cmp(&b.0))
+                        })
+                        .collect();
+                    for kind in 0..3 {
+                        beam.aim(facing(towards), &rays, &tree, &origin);
+                        match kind {
+                            0 => beam.trace(&tree, &origin, true),
+                            1 => beam.trace(&tree, &origin, false),
+                            // SAFETY: needs nothing.
+                            _ => unsafe { beam.trace_with::<super::super::lanes::One>(&tree, &origin) },
+                        }
+                        for (i, expected) in expected.iter().enumerate() {
+                            let found = beam.found(i);
+                            let face = (found != NONE).then(|| tree.leaves[found as usize].face);
+                            hits += usize::from(face.is_some());
+                            differ += usize::from(face != expected.map(|(_, face)| face));
+                        }
+                    }
+                }
+            }
+        }
+        // Where a ray runs in an edge to 10⁻⁷ of the beam.
+        assert!(hits > 2000 && differ < hits / 5000, "{hits} {differ}");
+    }
+}

@@ -84,7 +84,8 @@ impl Packet {
             let (least, greatest) = (size.min_element(), size.max_element());
             // A component that is 0 has an infinite inverse, which is right.
             let fits = greatest > 1e-15 && greatest < 1e15 && (least == 0.0 || least > 1e-30);
-            if !fits || !(place.abs().max_element() < 1e15) {
+            let there = place.abs().max_element();
+            if !fits || there.is_nan() || there >= 1e15 {
                 return false;
             }
             most = most.max(place.abs().max_element());
@@ -209,5 +210,55 @@ impl InLanes {
             }
         }
         bits
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::beam::tests::{maps, random, soup};
+    use super::super::origin::Origin;
+    use super::*;
+
+    /// Eight rays at a time, whatever the vectors, are blocked just where one at a time is by any triangle.
+    #[test]
+    fn packets_are_blocked_where_rays_are() {
+        let mut random = random(5);
+        let mut packet = Packet::default();
+        let [mut blocked, mut free] = [0, 0];
+        for (count, scale) in [(1, 1.0), (40, 1e-20), (300, 1.0), (100, 1e12)] {
+            let mesh = soup(count, scale, &mut random);
+            let tree = Tree::new(&mesh);
+            for map in maps(scale) {
+                for _ in 0..100 {
+                    let mut point =
+                        |reach: f64| DVec3::from_array([0; 3].map(|_| random() - 0.5)) * reach * scale;
+                    let mut rays = [Ray::nowhere(&map); PACKET];
+                    for (i, ray) in rays.iter_mut().enumerate() {
+                        let (from, to) = (point(3.0), point(3.0));
+                        let at = from - map.observer_rest();
+                        let direction = if i % 4 == 3 { (to - from) * DVec3::X } else { to - from };
+                        let far = if i % 2 == 0 { 1.0 } else { f64::INFINITY };
+                        let but = (i == 5).then_some(0);
+                        *ray = Ray { origin: Origin::at(&map, at), direction, range: [1e-9, far], but };
+                    }
+                    let every = |ray: &Ray<'_>| tree.leaves.iter().any(|leaf| ray.hits(leaf));
+                    let expected =
+                        rays.iter().enumerate().map(|(i, r)| u32::from(every(r)) << i).sum::<u32>();
+                    let alone = rays.iter().map(|r| r.is_blocked(&tree, &mut Vec::new()));
+                    let alone = alone.enumerate().map(|(i, b)| u32::from(b) << i).sum::<u32>();
+                    assert_eq!(alone, expected);
+                    for vectors in [false, true] {
+                        assert_eq!(packet.blocked(&rays, &tree, vectors), expected);
+                    }
+                    assert!(packet.aim(&rays, &tree));
+                    // SAFETY: needs nothing.
+                    let one = unsafe { packet.blocked_with::<super::super::lanes::One>(&rays, &tree) };
+                    assert_eq!(one, expected);
+                    blocked += expected.count_ones();
+                    free += 8 - expected.count_ones();
+                }
+            }
+        }
+        assert!(blocked > 1000 && free > 1000, "{blocked} {free}");
     }
 }
