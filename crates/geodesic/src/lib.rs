@@ -25,21 +25,38 @@
 //! [`Lorentz`] → [`Tetrad`] → [`Spacetime`], [`Flat`].
 
 mod celerity;
+mod curved;
+mod dual;
 mod event;
 mod flat;
 mod frame;
+mod kerr_schild;
+mod law;
 mod lorentz;
+mod metric;
+mod number;
+mod ray;
 mod real;
+mod runge_kutta;
 mod spacetime;
+mod tensor;
 mod tetrad;
 mod wide;
 
 pub use celerity::{Celerity, CelerityError};
+pub use curved::{Accuracy, Curved};
+pub use dual::Dual;
 pub use event::{Event, FourVector};
 pub use flat::Flat;
 pub use frame::{Lamp, Observer, Rest, World};
+pub use kerr_schild::{KerrError, KerrSchild};
+pub use law::{ByMetric, BySecondDerivative, Law};
 pub use lorentz::Lorentz;
+pub use metric::{Metric, Minkowski, Stop, minkowski};
+pub use number::Number;
+pub use ray::LightRay;
 pub use real::Real;
-pub use spacetime::{Segment, Spacetime};
+pub use runge_kutta::Method;
+pub use spacetime::{End, Monitor, Ray, Segment, Spacetime};
 pub use tetrad::{Tetrad, TetradError};
 pub use wide::Wide;
