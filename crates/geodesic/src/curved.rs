@@ -1,7 +1,7 @@
 use crate::law::product_at;
 use crate::{
-    ByMetric, BySecondDerivative, Event, FourVector, KerrError, KerrSchild, Law, LightRay, Method, Metric,
-    Spacetime, World,
+    ByMetric, BySecondDerivative, End, Event, FourVector, KerrError, KerrSchild, Law, LightRay, Method,
+    Metric, Spacetime, World,
 };
 
 /// A curved spacetime: a law of motion for light, and how accurately to follow it.
@@ -114,6 +114,11 @@ impl<L: Law> Spacetime for Curved<L> {
 
     fn product(&self, at: Event<World>, a: FourVector<World>, b: FourVector<World>) -> f64 {
         product_at(&self.law, at.coordinates().into(), a.into(), b.into())
+    }
+
+    fn fault(&self, at: Event<World>) -> Option<End> {
+        let x: [f64; 4] = at.coordinates().into();
+        self.law.stop(x).map(End::from).or_else(|| self.law.fault(x))
     }
 
     fn sagitta(&self) -> f64 {

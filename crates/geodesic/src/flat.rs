@@ -23,6 +23,11 @@ impl Spacetime for Flat {
         a.dot(b)
     }
 
+    fn fault(&self, at: Event<World>) -> Option<End> {
+        let finite = at.t().is_finite() && at.position().is_finite();
+        (!finite).then_some(End::NotANumber)
+    }
+
     fn sagitta(&self) -> f64 {
         0.0
     }

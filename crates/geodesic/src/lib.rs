@@ -24,14 +24,17 @@
 //! [`Real`] (the numbers) → [`Wide`] (twice the digits) → [`Event`], [`FourVector`] → [`Celerity`] →
 //! [`Lorentz`] → [`Tetrad`] → [`Spacetime`], [`Flat`].
 
+mod boyer_lindquist;
 mod celerity;
 mod curved;
 mod dual;
 mod event;
 mod flat;
 mod frame;
+mod kerr_observers;
 mod kerr_schild;
 mod law;
+mod local_frame;
 mod lorentz;
 mod metric;
 mod number;
@@ -43,14 +46,17 @@ mod tensor;
 mod tetrad;
 mod wide;
 
+pub use boyer_lindquist::BoyerLindquist;
 pub use celerity::{Celerity, CelerityError};
 pub use curved::{Accuracy, Curved};
 pub use dual::Dual;
 pub use event::{Event, FourVector};
 pub use flat::Flat;
 pub use frame::{Lamp, Observer, Rest, World};
+pub use kerr_observers::Sense;
 pub use kerr_schild::{KerrError, KerrSchild};
 pub use law::{ByMetric, BySecondDerivative, Law};
+pub use local_frame::{FrameError, LocalFrame, moving_observer, static_observer};
 pub use lorentz::Lorentz;
 pub use metric::{Metric, Minkowski, Stop, minkowski};
 pub use number::Number;

@@ -43,6 +43,9 @@ pub trait Spacetime: Sync {
     /// The product g(a, b) of two vectors at an event.
     fn product(&self, at: Event<World>, a: FourVector<World>, b: FourVector<World>) -> f64;
 
+    /// Why no ray can begin at an event and no observer be there; `None` where all is well.
+    fn fault(&self, at: Event<World>) -> Option<End>;
+
     /// How far (coordinate length) an exact ray may be from its segments: ε, by which whoever looks for hits
     /// has to widen things. The last, infinite segment is exact in direction, not in place.
     fn sagitta(&self) -> f64;
