@@ -49,11 +49,16 @@ impl KerrSchild {
         BoyerLindquist { t: event.t() + time, r, theta, phi }
     }
 
+    /// The azimuth φ′ of the outgoing Kerr–Schild chart, in which x + iy = (r − ia) sin θ e^{iφ′}.
+    pub(crate) fn azimuth(&self, at: BoyerLindquist) -> f64 {
+        at.phi - self.chart_offsets(at.r).1
+    }
+
     /// The event with given Boyer–Lindquist coordinates.
     pub fn from_boyer_lindquist(&self, at: BoyerLindquist) -> Event<World> {
-        let (time, azimuth) = self.chart_offsets(at.r);
+        let (time, _) = self.chart_offsets(at.r);
         let around = at.r.hypot(self.spin()) * at.theta.sin();
-        let (sine, cosine) = (at.phi - azimuth - (self.spin() / at.r).atan()).sin_cos();
+        let (sine, cosine) = (self.azimuth(at) - (self.spin() / at.r).atan()).sin_cos();
         Event::at(at.t - time, DVec3::new(around * cosine, around * sine, at.r * at.theta.cos()))
     }
 }

@@ -4,33 +4,31 @@
 //! Coefficients: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I* (2nd edition
 //! 1993), section II.5 and the authors' published tables, rounded to f64.
 
-use super::{Dense, Trial, combine};
+use super::{Dense, Slope, Trial, combine};
 
 /// One trial step of length `h` from `y`, where the derivative is `k1`.
 #[inline(always)]
-pub(super) fn step<const N: usize>(
-    f: &impl Fn(&[f64; N]) -> [f64; N],
-    y: &[f64; N],
-    k1: &[f64; N],
-    h: f64,
-) -> Trial<N> {
+pub(super) fn step<const N: usize>(f: &impl Slope<N>, y: &[f64; N], k1: &[f64; N], h: f64) -> Trial<N> {
     let k1 = *k1;
-    let k2 = f(&combine(y, h, [(0.05260015195876773, &k1)]));
-    let k3 = f(&combine(y, h, [(0.0197250569845379, &k1), (0.0591751709536137, &k2)]));
-    let k4 = f(&combine(y, h, [(0.02958758547680685, &k1), (0.08876275643042054, &k3)]));
-    let k5 =
-        f(&combine(y, h, [(0.2413651341592667, &k1), (-0.8845494793282861, &k3), (0.924834003261792, &k4)]));
-    let k6 = f(&combine(
+    let k2 = f.slope(&combine(y, h, [(0.05260015195876773, &k1)]));
+    let k3 = f.slope(&combine(y, h, [(0.0197250569845379, &k1), (0.0591751709536137, &k2)]));
+    let k4 = f.slope(&combine(y, h, [(0.02958758547680685, &k1), (0.08876275643042054, &k3)]));
+    let k5 = f.slope(&combine(
+        y,
+        h,
+        [(0.2413651341592667, &k1), (-0.8845494793282861, &k3), (0.924834003261792, &k4)],
+    ));
+    let k6 = f.slope(&combine(
         y,
         h,
         [(0.037037037037037035, &k1), (0.17082860872947386, &k4), (0.12546768756682242, &k5)],
     ));
-    let k7 = f(&combine(
+    let k7 = f.slope(&combine(
         y,
         h,
         [(0.037109375, &k1), (0.17025221101954405, &k4), (0.06021653898045596, &k5), (-0.017578125, &k6)],
     ));
-    let k8 = f(&combine(
+    let k8 = f.slope(&combine(
         y,
         h,
         [
@@ -41,7 +39,7 @@ pub(super) fn step<const N: usize>(
             (0.008273789163814023, &k7),
         ],
     ));
-    let k9 = f(&combine(
+    let k9 = f.slope(&combine(
         y,
         h,
         [
@@ -53,7 +51,7 @@ pub(super) fn step<const N: usize>(
             (-43.48988418106996, &k8),
         ],
     ));
-    let k10 = f(&combine(
+    let k10 = f.slope(&combine(
         y,
         h,
         [
@@ -66,7 +64,7 @@ pub(super) fn step<const N: usize>(
             (-0.020331201708508627, &k9),
         ],
     ));
-    let k11 = f(&combine(
+    let k11 = f.slope(&combine(
         y,
         h,
         [
@@ -80,7 +78,7 @@ pub(super) fn step<const N: usize>(
             (-3.0467644718982196, &k10),
         ],
     ));
-    let k12 = f(&combine(
+    let k12 = f.slope(&combine(
         y,
         h,
         [
@@ -149,7 +147,7 @@ pub(super) const DENSE_STAGES: u32 = 3;
 /// The continuation within a step taken from `y` to `trial.end`, where the derivative is `k13`.
 #[inline(always)]
 pub(super) fn dense<const N: usize>(
-    f: &impl Fn(&[f64; N]) -> [f64; N],
+    f: &impl Slope<N>,
     y: &[f64; N],
     trial: &Trial<N>,
     k13: &[f64; N],
@@ -157,7 +155,7 @@ pub(super) fn dense<const N: usize>(
 ) -> Dense<N> {
     let [k1, _, _, _, _, k6, k7, k8, k9, k10, k11, k12] = trial.stages;
     let k13 = *k13;
-    let k14 = f(&combine(
+    let k14 = f.slope(&combine(
         y,
         h,
         [
@@ -171,7 +169,7 @@ pub(super) fn dense<const N: usize>(
             (-0.008298, &k13),
         ],
     ));
-    let k15 = f(&combine(
+    let k15 = f.slope(&combine(
         y,
         h,
         [
@@ -185,7 +183,7 @@ pub(super) fn dense<const N: usize>(
             (0.1413124436746325, &k14),
         ],
     ));
-    let k16 = f(&combine(
+    let k16 = f.slope(&combine(
         y,
         h,
         [

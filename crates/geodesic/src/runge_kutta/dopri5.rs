@@ -4,26 +4,21 @@
 //! Coefficients: J. R. Dormand, P. J. Prince, J. Comp. Appl. Math. 6 (1980) 19; continuation: L. F. Shampine,
 //! Math. Comp. 46 (1986) 135.
 
-use super::{Dense, Trial, combine};
+use super::{Dense, Slope, Trial, combine};
 
 /// One trial step of length `h` from `y`, where the derivative is `k1`.
 #[inline(always)]
-pub(super) fn step<const N: usize>(
-    f: &impl Fn(&[f64; N]) -> [f64; N],
-    y: &[f64; N],
-    k1: &[f64; N],
-    h: f64,
-) -> Trial<N> {
+pub(super) fn step<const N: usize>(f: &impl Slope<N>, y: &[f64; N], k1: &[f64; N], h: f64) -> Trial<N> {
     let k1 = *k1;
-    let k2 = f(&combine(y, h, [(0.2, &k1)]));
-    let k3 = f(&combine(y, h, [(3.0 / 40.0, &k1), (9.0 / 40.0, &k2)]));
-    let k4 = f(&combine(y, h, [(44.0 / 45.0, &k1), (-56.0 / 15.0, &k2), (32.0 / 9.0, &k3)]));
-    let k5 = f(&combine(
+    let k2 = f.slope(&combine(y, h, [(0.2, &k1)]));
+    let k3 = f.slope(&combine(y, h, [(3.0 / 40.0, &k1), (9.0 / 40.0, &k2)]));
+    let k4 = f.slope(&combine(y, h, [(44.0 / 45.0, &k1), (-56.0 / 15.0, &k2), (32.0 / 9.0, &k3)]));
+    let k5 = f.slope(&combine(
         y,
         h,
         [(19372.0 / 6561.0, &k1), (-25360.0 / 2187.0, &k2), (64448.0 / 6561.0, &k3), (-212.0 / 729.0, &k4)],
     ));
-    let k6 = f(&combine(
+    let k6 = f.slope(&combine(
         y,
         h,
         [
@@ -45,7 +40,7 @@ pub(super) fn step<const N: usize>(
             (11.0 / 84.0, &k6),
         ],
     );
-    let k7 = f(&end);
+    let k7 = f.slope(&end);
     let error = combine(
         &[0.0; N],
         h,

@@ -14,6 +14,21 @@ pub enum Method {
     Dopri5,
 }
 
+/// f in y′ = f(y).
+///
+/// Any closure is one; a type of its own can insist on being inlined, and so on the instructions of its caller.
+pub(crate) trait Slope<const N: usize> {
+    /// The derivative at `y`.
+    fn slope(&self, y: &[f64; N]) -> [f64; N];
+}
+
+impl<const N: usize, F: Fn(&[f64; N]) -> [f64; N]> Slope<N> for F {
+    #[inline(always)]
+    fn slope(&self, y: &[f64; N]) -> [f64; N] {
+        self(y)
+    }
+}
+
 /// A step that may yet be refused.
 #[derive(Clone, Copy)]
 pub(crate) struct Trial<const N: usize> {
@@ -51,7 +66,7 @@ impl Method {
     #[inline(always)]
     pub(crate) fn step<const N: usize>(
         self,
-        f: &impl Fn(&[f64; N]) -> [f64; N],
+        f: &impl Slope<N>,
         y: &[f64; N],
         slope: &[f64; N],
         h: f64,
@@ -72,13 +87,9 @@ impl Method {
 
     /// The derivative at the end of an accepted step, and how many evaluations of f that took.
     #[inline(always)]
-    pub(crate) fn slope_at_end<const N: usize>(
-        self,
-        f: &impl Fn(&[f64; N]) -> [f64; N],
-        trial: &Trial<N>,
-    ) -> ([f64; N], u32) {
+    pub(crate) fn slope_at_end<const N: usize>(self, f: &impl Slope<N>, trial: &Trial<N>) -> ([f64; N], u32) {
         match self {
-            Self::Dop853 => (f(&trial.end), 1),
+            Self::Dop853 => (f.slope(&trial.end), 1),
             Self::Dopri5 => (trial.stages[6], 0),
         }
     }
@@ -87,7 +98,7 @@ impl Method {
     #[inline(always)]
     pub(crate) fn dense<const N: usize>(
         self,
-        f: &impl Fn(&[f64; N]) -> [f64; N],
+        f: &impl Slope<N>,
         y: &[f64; N],
         trial: &Trial<N>,
         slope_at_end: &[f64; N],
