@@ -14,19 +14,22 @@ pub struct Dual {
 
 impl Dual {
     /// The four coordinates, each with derivative 1 along itself.
-    #[inline]
+    #[inline(always)]
     pub fn coordinates(x: [f64; 4]) -> [Self; 4] {
-        [0, 1, 2, 3].map(|axis| {
-            let mut gradient = [0.0; 4];
-            gradient[axis] = 1.0;
-            Self { value: x[axis], gradient }
-        })
+        let [t, x, y, z] = x;
+        [
+            Self { value: t, gradient: [1.0, 0.0, 0.0, 0.0] },
+            Self { value: x, gradient: [0.0, 1.0, 0.0, 0.0] },
+            Self { value: y, gradient: [0.0, 0.0, 1.0, 0.0] },
+            Self { value: z, gradient: [0.0, 0.0, 0.0, 1.0] },
+        ]
     }
 
     /// f of this number, from f and f′ there.
     #[inline(always)]
     fn chain(self, value: f64, slope: f64) -> Self {
-        Self { value, gradient: self.gradient.map(|d| d * slope) }
+        let [t, x, y, z] = self.gradient;
+        Self { value, gradient: [t * slope, x * slope, y * slope, z * slope] }
     }
 }
 

@@ -74,7 +74,14 @@ impl<M: Metric> Law for ByMetric<M> {
     fn derivative(&self, state: &[f64; 8]) -> [f64; 8] {
         let (x, p) = split(state);
         let g = self.0.covariant(Dual::coordinates(x));
-        let (inverse, determinant) = inverse(&g.map(|row| row.map(|c| c.value)));
+        // Written out, because `map` of arrays this large is not inlined.
+        let mut values = [[0.0; 4]; 4];
+        for a in 0..4 {
+            for b in a..4 {
+                values[a][b] = g[a][b].value;
+            }
+        }
+        let (inverse, determinant) = inverse(&values);
         let v = lowered(&inverse, &p);
         let mut force = [0.0; 4];
         for a in 0..4 {

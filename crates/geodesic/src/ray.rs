@@ -13,6 +13,8 @@ pub struct LightRay<'a, L> {
     slope: [f64; 8],
     /// The step to try next.
     h: f64,
+    /// Error and length of the last accepted step.
+    before: Option<(f64, f64)>,
     off_cone: f64,
     /// Why the integration ended.
     integrated: Option<End>,
@@ -20,8 +22,6 @@ pub struct LightRay<'a, L> {
     /// Where the next chord begins: affine parameter and event.
     from: f64,
     start: [f64; 4],
-    /// Length of the last chord.
-    length: f64,
     /// The last segment's direction where it runs to infinity.
     infinite: Option<Segment>,
     finished: bool,
@@ -33,11 +33,33 @@ struct Step {
     from: f64,
     length: f64,
     dense: Dense<8>,
+    /// The length of the step as it was taken, before it was cut where the ray stopped.
+    whole: f64,
+    /// Events at the quarters of the step, its end the last.
+    samples: [[f64; 4]; SAMPLES],
 }
 
+const SAMPLES: usize = 4;
+
 impl Step {
+    fn new(from: f64, length: f64, dense: Dense<8>, whole: f64) -> Self {
+        let mut step = Self { from, length, dense, whole, samples: [[0.0; 4]; SAMPLES] };
+        step.samples = std::array::from_fn(|part| step.event_at(from + length * Self::fraction(part)));
+        step
+    }
+
+    fn fraction(part: usize) -> f64 {
+        (part + 1) as f64 / SAMPLES as f64
+    }
+
     fn to(&self) -> f64 {
         self.from + self.length
+    }
+
+    #[inline(always)]
+    fn event_at(&self, s: f64) -> [f64; 4] {
+        let x = (s - self.from) / self.whole;
+        std::array::from_fn(|i| self.dense.component(i, x))
     }
 }
 
@@ -57,12 +79,12 @@ impl<'a, L: Law> LightRay<'a, L> {
             state: [f64::NAN; 8],
             slope: [f64::NAN; 8],
             h: 0.0,
+            before: None,
             off_cone: 0.0,
             integrated: None,
             steps: VecDeque::new(),
             from: 0.0,
             start,
-            length: 0.0,
             infinite: None,
             finished: false,
             monitor: Monitor::default(),
@@ -146,12 +168,19 @@ impl<'a, L: Law> LightRay<'a, L> {
             if keep || stop.is_some() {
                 let (dense, count) = method.dense(&f, &self.state, &trial, &slope, self.h);
                 self.monitor.evaluations += count;
-                self.steps.push_back(Step { from: self.s, length: self.h, dense });
+                self.steps.push_back(Step::new(self.s, self.h, dense, self.h));
             }
             self.s += self.h;
             self.monitor.steps += 1;
-            let factor = method.rescaling(error);
+            let taken = self.h;
+            let mut factor = method.rescaling(error);
+            if let Some((before, length)) = self.before {
+                // Where steps have to become shorter one after the other, as on the way in, the next one will have
+                // to as well (K. Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496).
+                factor = factor.min(factor * method.trend(taken / length, before / error));
+            }
             self.h *= if grow { factor } else { factor.min(1.0) };
+            self.before = Some((error.max(1e-6), taken));
             self.state = trial.end;
             self.slope = slope;
             self.shorten();
@@ -207,6 +236,7 @@ impl<'a, L: Law> LightRay<'a, L> {
         }
         self.state = step.dense.at(after);
         self.s = step.from + after * step.length;
+        *step = Step::new(step.from, after * step.length, step.dense, step.whole);
     }
 
     /// The wave vector at infinity, once what is not known of it is below the tolerance.
@@ -260,98 +290,113 @@ impl<'a, L: Law> LightRay<'a, L> {
     /// The state at an affine parameter, continued from the nearest step known.
     fn state_at(&self, s: f64) -> Option<[f64; 8]> {
         let step = self.steps.iter().find(|step| s <= step.to()).or(self.steps.back())?;
-        Some(step.dense.at((s - step.from) / step.length))
+        Some(step.dense.at((s - step.from) / step.whole))
     }
 
-    fn event_at(&self, s: f64) -> [f64; 4] {
-        match self.steps.iter().find(|step| s <= step.to()).or(self.steps.back()) {
-            Some(step) => {
-                let x = (s - step.from) / step.length;
-                std::array::from_fn(|i| step.dense.component(i, x))
-            }
-            None => self.start,
-        }
-    }
-
-    /// How far the ray is from the chord to the affine parameter `to`, 1 being as far as allowed, and where the
-    /// chord ends.
+    /// How far the ray is from the chord from `start` to the end of a stretch of step `last`, as a fraction of what
+    /// is allowed.
     ///
     /// Every step's own stretch of the chord is looked at: steps are short where the ray bends.
-    fn sagitta(&self, to: f64) -> (f64, [f64; 4]) {
-        let end = self.event_at(to);
+    fn sagitta(&self, last: usize, to: f64, end: &[f64; 4]) -> f64 {
         let length = to - self.from;
         let chord: [f64; 4] = std::array::from_fn(|i| (end[i] - self.start[i]) / length);
-        let across = dot3(&chord, &chord);
+        let across = 1.0 / dot3(&chord, &chord);
+        let allowed = [self.accuracy.sagitta, self.accuracy.lag].map(|most| 1.0 / (most * most));
         let mut worst = 0.0f64;
-        let overlapping = self.steps.iter().filter(|step| step.from < to).count();
-        let parts = if overlapping == 1 { 6 } else { 4 };
-        for step in self.steps.iter().take_while(|step| step.from < to) {
-            let (first, last) = (step.from.max(self.from), step.to().min(to));
-            for part in 1..=parts {
-                let s = first + (last - first) * f64::from(part) / f64::from(parts);
-                let x = (s - step.from) / step.length;
-                let off: [f64; 4] = std::array::from_fn(|i| {
-                    step.dense.component(i, x) - self.start[i] - chord[i] * (s - self.from)
-                });
-                let along = dot3(&off, &chord);
-                let aside = (dot3(&off, &off) - along * along / across).max(0.0);
-                worst = worst
-                    .max(aside / (self.accuracy.sagitta * self.accuracy.sagitta))
-                    .max((off[0] / self.accuracy.lag).powi(2));
+        let mut look = |s: f64, at: &[f64; 4]| {
+            let off: [f64; 4] = std::array::from_fn(|i| at[i] - self.start[i] - chord[i] * (s - self.from));
+            let along = dot3(&off, &chord);
+            let aside = (dot3(&off, &off) - along * along * across).max(0.0);
+            // Also keeps a NaN, which `max` would drop.
+            let square = (aside * allowed[0]).max(off[0] * off[0] * allowed[1]);
+            worst = if square <= worst { worst } else { square };
+        };
+        for (index, step) in self.steps.iter().enumerate().take(last + 1) {
+            let whole = step.from >= self.from && index < last;
+            if whole {
+                for (part, at) in step.samples.iter().enumerate() {
+                    look(step.from + step.length * Step::fraction(part), at);
+                }
+            } else {
+                let (first, to) = (step.from.max(self.from), step.to().min(to));
+                // Where the chord is within one step it is smooth and its own middle tells most.
+                const PARTS: u32 = 5;
+                for part in 1..PARTS {
+                    let s = first + (to - first) * (f64::from(part) / f64::from(PARTS));
+                    look(s, &step.event_at(s));
+                }
+                if index < last {
+                    look(step.to(), &step.samples[SAMPLES - 1]);
+                }
             }
         }
-        (worst.sqrt(), end)
+        worst.sqrt()
     }
 
     /// The longest chord from where the last one ended that is within the sagitta.
     fn chord(&mut self) -> Option<Segment> {
-        // What a chord's own samples may miss of its greatest sagitta.
+        // What a chord's samples may miss of its greatest sagitta.
         const AIM: f64 = 0.95;
         while self.steps.front().is_some_and(|step| step.to() <= self.from) {
             self.steps.pop_front();
         }
-        let mut length = if self.length > 0.0 { self.length } else { self.h };
+        // Step by step as long as the chord may run to the step's end.
         let mut fits: Option<(f64, [f64; 4])> = None;
-        let mut too_long = f64::INFINITY;
-        for _ in 0..40 {
-            while self.integrated.is_none() && self.from + length > self.s {
-                self.advance(true);
+        let mut last = 0;
+        let (mut too_long, mut sagitta) = loop {
+            if last == self.steps.len() {
+                if self.integrated.is_none() {
+                    self.advance(true);
+                }
+                if last == self.steps.len() {
+                    return fits.map(|fit| self.cut(fit));
+                }
             }
-            let most = self.s - self.from;
-            if most <= 0.0 {
+            let step = &self.steps[last];
+            let (to, end) = (step.to(), step.samples[SAMPLES - 1]);
+            let sagitta = self.sagitta(last, to, &end);
+            if sagitta.is_nan() {
                 return None;
             }
-            let whole = self.integrated.is_some() && length >= most;
-            length = length.min(most);
-            let (sagitta, end) = self.sagitta(self.from + length);
-            let factor = (AIM * AIM / sagitta).sqrt();
+            if sagitta > AIM {
+                break (to - self.from, sagitta);
+            }
+            fits = Some((to - self.from, end));
+            last += 1;
+        };
+        // Then within the step.
+        let step_starts = (self.steps[last].from - self.from).max(0.0);
+        let mut length = too_long * (AIM / sagitta).sqrt();
+        for _ in 0..30 {
+            let known = fits.map_or(0.0, |fit| fit.0).max(step_starts);
+            if !(length > known && length < too_long) {
+                length = 0.5 * (known + too_long);
+            }
+            let end = self.steps[last].event_at(self.from + length);
+            sagitta = self.sagitta(last, self.from + length, &end);
             if sagitta <= AIM {
                 fits = Some((length, end));
-                if whole || sagitta > 0.85 * AIM {
+                if sagitta > 0.88 * AIM {
                     break;
                 }
-                length = (length * factor.min(3.0)).min(0.5 * (length + too_long).min(f64::MAX));
-            } else if sagitta.is_nan() {
-                return None;
             } else {
-                too_long = too_long.min(length);
-                length *= factor.clamp(0.1, 0.97);
-                if let Some((known, _)) = fits {
-                    length = length.max(0.5 * (known + too_long));
-                    if too_long - known < 0.02 * known {
-                        break;
-                    }
-                }
+                too_long = length;
             }
+            if too_long - fits.map_or(0.0, |fit| fit.0) < 0.01 * too_long && fits.is_some() {
+                break;
+            }
+            length *= (0.96 * AIM / sagitta).sqrt();
         }
-        let (length, end) = fits?;
+        fits.map(|fit| self.cut(fit))
+    }
+
+    fn cut(&mut self, (length, end): (f64, [f64; 4])) -> Segment {
         let direction: [f64; 4] = std::array::from_fn(|i| (end[i] - self.start[i]) / length);
         let segment =
             Segment { start: self.start.into(), direction: direction.into(), from: self.from, length };
         self.from += length;
         self.start = end;
-        self.length = length;
-        Some(segment)
+        segment
     }
 }
 

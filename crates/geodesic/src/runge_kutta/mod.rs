@@ -113,12 +113,21 @@ impl Method {
     /// By what a step is to be multiplied so that its error becomes the tolerance; `error` is in units of that.
     #[inline]
     pub(crate) fn rescaling(self, error: f64) -> f64 {
-        let order = match self {
+        // 0.9 so that the next step is likely to be accepted; the bounds are those of Hairer et al.
+        (0.9 * error.powf(-1.0 / self.order())).clamp(0.2, 6.0)
+    }
+
+    /// By what the step that would have been right for the last one differs from that for the one before it.
+    #[inline]
+    pub(crate) fn trend(self, lengths: f64, errors: f64) -> f64 {
+        lengths * errors.powf(1.0 / self.order())
+    }
+
+    fn order(self) -> f64 {
+        match self {
             Self::Dop853 => 8.0,
             Self::Dopri5 => 5.0,
-        };
-        // 0.9 so that the next step is likely to be accepted; the bounds are those of Hairer et al.
-        (0.9 * error.powf(-1.0 / order)).clamp(0.2, 6.0)
+        }
     }
 }
 
