@@ -164,3 +164,22 @@ impl<F> Sub for Event<F> {
         self.0 - other.0
     }
 }
+
+impl<F> From<FourVector<F>> for [f64; 4] {
+    fn from(vector: FourVector<F>) -> Self {
+        let [x, y, z] = vector.space;
+        [vector.t, x, y, z]
+    }
+}
+
+impl<F> From<[f64; 4]> for FourVector<F> {
+    fn from([t, x, y, z]: [f64; 4]) -> Self {
+        Self::new(t, x, y, z)
+    }
+}
+
+impl<F> From<[f64; 4]> for Event<F> {
+    fn from(x: [f64; 4]) -> Self {
+        Self(x.into())
+    }
+}

@@ -24,22 +24,50 @@
 //! [`Real`] (the numbers) → [`Wide`] (twice the digits) → [`Event`], [`FourVector`] → [`Celerity`] →
 //! [`Lorentz`] → [`Tetrad`] → [`Spacetime`], [`Flat`].
 
+mod boyer_lindquist;
 mod celerity;
+mod curved;
+mod distant_camera;
+mod dual;
 mod event;
 mod flat;
 mod frame;
+mod kerr_observers;
+mod kerr_schild;
+mod kerr_sky;
+mod law;
+mod local_frame;
 mod lorentz;
+mod metric;
+mod mino;
+mod number;
+mod ray;
 mod real;
+mod runge_kutta;
 mod spacetime;
+mod tensor;
 mod tetrad;
 mod wide;
 
+pub use boyer_lindquist::BoyerLindquist;
 pub use celerity::{Celerity, CelerityError};
+pub use curved::{Accuracy, Curved};
+pub use distant_camera::{DistantCamera, DistantCameraError};
+pub use dual::Dual;
 pub use event::{Event, FourVector};
 pub use flat::Flat;
 pub use frame::{Lamp, Observer, Rest, World};
+pub use kerr_observers::Sense;
+pub use kerr_schild::{KerrError, KerrSchild};
+pub use kerr_sky::KerrSky;
+pub use law::{ByMetric, BySecondDerivative, Law};
+pub use local_frame::{FrameError, LocalFrame, moving_observer, static_observer};
 pub use lorentz::Lorentz;
+pub use metric::{Metric, Minkowski, Stop, minkowski};
+pub use number::Number;
+pub use ray::LightRay;
 pub use real::Real;
-pub use spacetime::{Segment, Spacetime};
+pub use runge_kutta::Method;
+pub use spacetime::{End, Monitor, Ray, Segment, Spacetime};
 pub use tetrad::{Tetrad, TetradError};
 pub use wide::Wide;

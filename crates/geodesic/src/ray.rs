@@ -1,0 +1,466 @@
+use crate::law::split;
+use crate::runge_kutta::Dense;
+use crate::{Accuracy, End, Event, FourVector, Law, Monitor, Ray, Segment, Stop, World};
+use std::collections::VecDeque;
+
+/// A ray of a [`Curved`](crate::Curved) spacetime: integrated step by step, handed out chord by chord.
+pub struct LightRay<'a, L> {
+    law: &'a L,
+    accuracy: Accuracy,
+    /// The affine parameter up to which it is integrated, and the state and its derivative there.
+    s: f64,
+    state: [f64; 8],
+    slope: [f64; 8],
+    /// The step to try next.
+    h: f64,
+    /// Error and length of the last accepted step.
+    before: Option<(f64, f64)>,
+    off_cone: f64,
+    /// Why the integration ended.
+    integrated: Option<End>,
+    steps: VecDeque<Step>,
+    /// Where the next chord begins: affine parameter and event.
+    from: f64,
+    start: [f64; 4],
+    /// The last segment's direction where it runs to infinity.
+    infinite: Option<Segment>,
+    finished: bool,
+    monitor: Monitor,
+}
+
+/// An accepted step, to be evaluated anywhere within.
+struct Step {
+    from: f64,
+    length: f64,
+    dense: Dense<8>,
+    /// The length of the step as it was taken, before it was cut where the ray stopped.
+    whole: f64,
+    /// Events at the quarters of the step, its end the last.
+    samples: [[f64; 4]; SAMPLES],
+}
+
+const SAMPLES: usize = 4;
+
+impl Step {
+    fn new(from: f64, length: f64, dense: Dense<8>, whole: f64) -> Self {
+        let mut step = Self { from, length, dense, whole, samples: [[0.0; 4]; SAMPLES] };
+        step.samples = std::array::from_fn(|part| step.event_at(from + length * Self::fraction(part)));
+        step
+    }
+
+    fn fraction(part: usize) -> f64 {
+        (part + 1) as f64 / SAMPLES as f64
+    }
+
+    fn to(&self) -> f64 {
+        self.from + self.length
+    }
+
+    #[inline(always)]
+    fn event_at(&self, s: f64) -> [f64; 4] {
+        let x = (s - self.from) / self.whole;
+        std::array::from_fn(|i| self.dense.component(i, x))
+    }
+}
+
+impl<'a, L: Law> LightRay<'a, L> {
+    pub(crate) fn new(
+        law: &'a L,
+        accuracy: Accuracy,
+        event: Event<World>,
+        wave_vector: FourVector<World>,
+    ) -> Self {
+        let start: [f64; 4] = event.coordinates().into();
+        let k: [f64; 4] = wave_vector.into();
+        let mut ray = Self {
+            law,
+            accuracy,
+            s: 0.0,
+            state: [f64::NAN; 8],
+            slope: [f64::NAN; 8],
+            h: 0.0,
+            before: None,
+            off_cone: 0.0,
+            integrated: None,
+            steps: VecDeque::new(),
+            from: 0.0,
+            start,
+            infinite: None,
+            finished: false,
+            monitor: Monitor::default(),
+        };
+        ray.integrated = ray.begin(start, k).err();
+        ray
+    }
+
+    fn begin(&mut self, x: [f64; 4], k: [f64; 4]) -> Result<(), End> {
+        if !x.iter().chain(&k).all(|c| c.is_finite()) {
+            return Err(End::NotANumber);
+        }
+        if let Some(stop) = self.law.stop(x) {
+            return Err(stop.into());
+        }
+        if let Some(fault) = self.law.fault(x) {
+            return Err(fault);
+        }
+        self.state = self.law.state(x, k);
+        self.slope = self.law.derivative(&self.state);
+        self.monitor.evaluations = 1;
+        if !self.slope.iter().all(|c| c.is_finite()) {
+            return Err(End::NotANumber);
+        }
+        self.off_cone = self.law.off_cone(&self.state, &self.slope).unwrap_or(0.0);
+        let speed = length(&k[1..]);
+        if speed == 0.0 {
+            return Err(End::NotANumber);
+        }
+        // A fifth of the way to the origin at a tolerance of 1e-8; refused if that is too far.
+        self.h = 2.0 * self.accuracy.tolerance.powf(0.125) * (self.law.scale() + length(&x[1..])) / speed;
+        self.shorten();
+        Ok(())
+    }
+
+    /// Integrates one more step, keeping its continuation if `dense`.
+    fn advance(&mut self, dense: bool) -> Option<End> {
+        match self.try_advance(dense) {
+            Ok(()) => None,
+            Err(end) => {
+                self.integrated = Some(end);
+                Some(end)
+            }
+        }
+    }
+
+    fn try_advance(&mut self, keep: bool) -> Result<(), End> {
+        let Accuracy { method, tolerance, .. } = self.accuracy;
+        let law = self.law;
+        let f = |y: &[f64; 8]| law.derivative(y);
+        let mut grow = true;
+        loop {
+            if self.monitor.steps + self.monitor.refused >= self.accuracy.steps {
+                return Err(End::StepLimit);
+            }
+            let trial = method.step(&f, &self.state, &self.slope, self.h);
+            self.monitor.evaluations += method.stages();
+            let error = trial.error(method, &self.allowed(&trial.end, tolerance));
+            if error.is_nan() || error > 1.0 || !error.is_finite() {
+                self.monitor.refused += 1;
+                grow = false;
+                self.h *= if error.is_finite() { method.rescaling(error).min(0.9) } else { 0.2 };
+                // Smaller, and it would no longer change where the ray is.
+                let reach = self.h * length(&self.slope[1..4]);
+                if reach < 1e-13 * (self.law.scale() + length(&self.state[1..4])) {
+                    let ahead: [f64; 4] =
+                        std::array::from_fn(|i| self.state[i] + 8.0 * self.h * self.slope[i]);
+                    return Err(self.law.fault(ahead).unwrap_or(End::StepLimit));
+                }
+                continue;
+            }
+            let (slope, count) = method.slope_at_end(&f, &trial);
+            self.monitor.evaluations += count;
+            if !slope.iter().all(|c| c.is_finite()) {
+                self.monitor.refused += 1;
+                grow = false;
+                self.h *= 0.2;
+                continue;
+            }
+            let stop = law.stop(split(&trial.end).0);
+            if keep || stop.is_some() {
+                let (dense, count) = method.dense(&f, &self.state, &trial, &slope, self.h);
+                self.monitor.evaluations += count;
+                self.steps.push_back(Step::new(self.s, self.h, dense, self.h));
+            }
+            self.s += self.h;
+            self.monitor.steps += 1;
+            let taken = self.h;
+            let mut factor = method.rescaling(error);
+            if let Some((before, length)) = self.before {
+                // Where steps have to become shorter one after the other, as on the way in, the next one will have
+                // to as well (K. Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496).
+                factor = factor.min(factor * method.trend(taken / length, before / error));
+            }
+            self.h *= if grow { factor } else { factor.min(1.0) };
+            self.before = Some((error.max(1e-6), taken));
+            self.state = trial.end;
+            self.slope = slope;
+            self.shorten();
+            if let Some(stop) = stop {
+                self.locate();
+                return Err(stop.into());
+            }
+            if let Some(off) = law.off_cone(&self.state, &self.slope) {
+                let drift = (off - self.off_cone).abs();
+                self.monitor.drift = self.monitor.drift.max(drift);
+                if drift.is_nan() || drift > self.accuracy.drift {
+                    return Err(End::Drift);
+                }
+            }
+            return match self.escaped() {
+                Some(wave_vector) => Err(End::Sky { wave_vector }),
+                None => Ok(()),
+            };
+        }
+    }
+
+    /// Keeps the next step from leaping over what is near the origin: no estimate of its error would tell.
+    fn shorten(&mut self) {
+        let place = &self.state[1..4];
+        let velocity = &self.slope[1..4];
+        let r = length(place);
+        let inward = -(0..3).map(|i| place[i] * velocity[i]).sum::<f64>() > 0.5 * r * length(velocity);
+        let most = if inward { 0.8 } else { 6.0 } * (self.law.scale() + r) / length(velocity);
+        self.h = self.h.min(most);
+    }
+
+    /// What error each component may have in a step.
+    #[inline(always)]
+    fn allowed(&self, end: &[f64; 8], tolerance: f64) -> [f64; 8] {
+        let before = &self.state;
+        let place = tolerance * (self.law.scale() + length(&before[1..4]).max(length(&end[1..4])));
+        let wave = tolerance * length(&before[4..]).max(length(&end[4..]));
+        [place, place, place, place, wave, wave, wave, wave]
+    }
+
+    /// Cuts the last step where the ray first stops.
+    fn locate(&mut self) {
+        let Some(step) = self.steps.back_mut() else { return };
+        let (mut before, mut after) = (0.0, 1.0);
+        // To a millionth of the step.
+        for _ in 0..20 {
+            let middle = 0.5 * (before + after);
+            if self.law.stop(split(&step.dense.at(middle)).0).is_some() {
+                after = middle;
+            } else {
+                before = middle;
+            }
+        }
+        self.state = step.dense.at(after);
+        self.s = step.from + after * step.length;
+        *step = Step::new(step.from, after * step.length, step.dense, step.whole);
+    }
+
+    /// The wave vector at infinity, once what is not known of it is below the tolerance.
+    ///
+    /// Where g − η falls like M/r, the derivative ḱ of the wave vector falls like 1/r² along it and like 1/r³
+    /// across it: what is left of its change is ḱ r/|k| and half of that. The error of this is of relative order
+    /// b/r and M/r, b the distance at which the straight ray passes the origin.
+    fn escaped(&self) -> Option<FourVector<World>> {
+        let place = &self.state[1..4];
+        let k = &self.state[5..8];
+        let r = length(place);
+        if r < self.law.escape_radius() {
+            return None;
+        }
+        let size = length(k);
+        let outward = (0..3).map(|i| place[i] * k[i]).sum::<f64>() / (r * size);
+        if outward.is_nan() || outward < 0.9 {
+            return None;
+        }
+        let reach = r / size;
+        let change = &self.slope[5..8];
+        let along = (0..3).map(|i| change[i] * k[i]).sum::<f64>() / (size * size);
+        let across: [f64; 3] = std::array::from_fn(|i| change[i] - along * k[i]);
+        let aside = (1.0 - outward * outward).max(0.0).sqrt();
+        let bend = 0.5 * length(&across) * reach / size;
+        let stretch = along.abs() * reach;
+        let time = self.slope[4] * reach;
+        let unknown = bend * (aside + stretch + bend) + (time / size).abs() * (stretch + bend);
+        if unknown > 0.1 * self.accuracy.tolerance {
+            return None;
+        }
+        let n: [f64; 3] = std::array::from_fn(|i| k[i] + 0.5 * across[i] * reach);
+        let norm = length(&n);
+        let before = self.law.wave_vector(&self.state)[0];
+        let frequency = (self.state[4] + time).abs();
+        let [x, y, z] = n.map(|c| c / norm * frequency);
+        Some(FourVector::new(frequency.copysign(before), x, y, z))
+    }
+
+    /// Follows the ray to its end without laying segments along it; cheaper where nothing is in the way.
+    pub fn follow(&mut self) -> End {
+        loop {
+            if let Some(end) = self.integrated {
+                self.finished = true;
+                return end;
+            }
+            self.advance(false);
+        }
+    }
+
+    /// The state at an affine parameter, continued from the nearest step known.
+    fn state_at(&self, s: f64) -> Option<[f64; 8]> {
+        let step = self.steps.iter().find(|step| s <= step.to()).or(self.steps.back())?;
+        Some(step.dense.at((s - step.from) / step.whole))
+    }
+
+    /// How far the ray is from the chord from `start` to the end of a stretch of step `last`, as a fraction of what
+    /// is allowed.
+    ///
+    /// Every step's own stretch of the chord is looked at: steps are short where the ray bends.
+    fn sagitta(&self, last: usize, to: f64, end: &[f64; 4]) -> f64 {
+        let length = to - self.from;
+        let chord: [f64; 4] = std::array::from_fn(|i| (end[i] - self.start[i]) / length);
+        let across = 1.0 / dot3(&chord, &chord);
+        let allowed = [self.accuracy.sagitta, self.accuracy.lag].map(|most| 1.0 / (most * most));
+        let mut worst = 0.0f64;
+        let mut look = |s: f64, at: &[f64; 4]| {
+            let off: [f64; 4] = std::array::from_fn(|i| at[i] - self.start[i] - chord[i] * (s - self.from));
+            let along = dot3(&off, &chord);
+            let aside = (dot3(&off, &off) - along * along * across).max(0.0);
+            // Also keeps a NaN, which `max` would drop.
+            let square = (aside * allowed[0]).max(off[0] * off[0] * allowed[1]);
+            worst = if square <= worst { worst } else { square };
+        };
+        for (index, step) in self.steps.iter().enumerate().take(last + 1) {
+            let whole = step.from >= self.from && index < last;
+            if whole {
+                for (part, at) in step.samples.iter().enumerate() {
+                    look(step.from + step.length * Step::fraction(part), at);
+                }
+            } else {
+                let (first, to) = (step.from.max(self.from), step.to().min(to));
+                // Where the chord is within one step it is smooth and its own middle tells most.
+                const PARTS: u32 = 5;
+                for part in 1..PARTS {
+                    let s = first + (to - first) * (f64::from(part) / f64::from(PARTS));
+                    look(s, &step.event_at(s));
+                }
+                if index < last {
+                    look(step.to(), &step.samples[SAMPLES - 1]);
+                }
+            }
+        }
+        worst.sqrt()
+    }
+
+    /// The longest chord from where the last one ended that is within the sagitta.
+    fn chord(&mut self) -> Option<Segment> {
+        // What a chord's samples may miss of its greatest sagitta.
+        const AIM: f64 = 0.95;
+        while self.steps.front().is_some_and(|step| step.to() <= self.from) {
+            self.steps.pop_front();
+        }
+        // Step by step as long as the chord may run to the step's end.
+        let mut fits: Option<(f64, [f64; 4])> = None;
+        let mut last = 0;
+        let (mut too_long, mut sagitta) = loop {
+            if last == self.steps.len() {
+                if self.integrated.is_none() {
+                    self.advance(true);
+                }
+                if last == self.steps.len() {
+                    return fits.map(|fit| self.cut(fit));
+                }
+            }
+            let step = &self.steps[last];
+            let (to, end) = (step.to(), step.samples[SAMPLES - 1]);
+            let sagitta = self.sagitta(last, to, &end);
+            if sagitta.is_nan() {
+                return None;
+            }
+            if sagitta > AIM {
+                break (to - self.from, sagitta);
+            }
+            fits = Some((to - self.from, end));
+            last += 1;
+        };
+        // Then within the step.
+        let step_starts = (self.steps[last].from - self.from).max(0.0);
+        let mut length = too_long * (AIM / sagitta).sqrt();
+        for _ in 0..30 {
+            let known = fits.map_or(0.0, |fit| fit.0).max(step_starts);
+            if !(length > known && length < too_long) {
+                length = 0.5 * (known + too_long);
+            }
+            let end = self.steps[last].event_at(self.from + length);
+            sagitta = self.sagitta(last, self.from + length, &end);
+            if sagitta <= AIM {
+                fits = Some((length, end));
+                if sagitta > 0.88 * AIM {
+                    break;
+                }
+            } else {
+                too_long = length;
+            }
+            if too_long - fits.map_or(0.0, |fit| fit.0) < 0.01 * too_long && fits.is_some() {
+                break;
+            }
+            length *= (0.96 * AIM / sagitta).sqrt();
+        }
+        fits.map(|fit| self.cut(fit))
+    }
+
+    fn cut(&mut self, (length, end): (f64, [f64; 4])) -> Segment {
+        let direction: [f64; 4] = std::array::from_fn(|i| (end[i] - self.start[i]) / length);
+        let segment =
+            Segment { start: self.start.into(), direction: direction.into(), from: self.from, length };
+        self.from += length;
+        self.start = end;
+        segment
+    }
+}
+
+impl<L: Law> Iterator for LightRay<'_, L> {
+    type Item = Segment;
+
+    fn next(&mut self) -> Option<Segment> {
+        if self.finished {
+            return None;
+        }
+        if (self.integrated.is_none() || self.from < self.s)
+            && let Some(segment) = self.chord()
+        {
+            self.monitor.segments += 1;
+            return Some(segment);
+        }
+        self.finished = true;
+        let Some(End::Sky { wave_vector }) = self.integrated else { return None };
+        let segment = Segment {
+            start: self.start.into(),
+            direction: wave_vector,
+            from: self.from,
+            length: f64::INFINITY,
+        };
+        self.infinite = Some(segment);
+        self.monitor.segments += 1;
+        Some(segment)
+    }
+}
+
+impl<L: Law> Ray for LightRay<'_, L> {
+    fn at(&self, s: f64) -> (Event<World>, FourVector<World>) {
+        if let Some(segment) = self.infinite {
+            return (segment.at(s), segment.direction);
+        }
+        let state = self.state_at(s).unwrap_or(self.state);
+        (split(&state).0.into(), self.law.wave_vector(&state).into())
+    }
+
+    fn end(&self) -> Option<End> {
+        if self.finished { self.integrated } else { None }
+    }
+
+    fn monitor(&self) -> Monitor {
+        self.monitor
+    }
+}
+
+impl From<Stop> for End {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Horizon => Self::Horizon,
+            Stop::Edge => Self::Edge,
+        }
+    }
+}
+
+#[inline(always)]
+fn length(v: &[f64]) -> f64 {
+    v.iter().map(|c| c * c).sum::<f64>().sqrt()
+}
+
+/// The product of the space parts.
+#[inline(always)]
+fn dot3(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+}
