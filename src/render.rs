@@ -8,7 +8,7 @@ use crate::plan::Method;
 use crate::raster::{Drawable, TooManyToPaint, paint, shade_again};
 use crate::relativity::ApparentMap;
 use crate::scene::{Camera, Mesh, Scene};
-use crate::trace::{Count, Tracer};
+use crate::trace::{Look, Paths, Traced, Tracer};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -28,8 +28,10 @@ pub struct Options {
     pub coloring: Coloring,
     /// Where the Doppler factor is worked out.
     pub doppler_at: DopplerAt,
-    /// What decides which triangle a pixel sees.
+    /// What decides which triangle a pixel sees, where nothing is traced.
     pub raster: Raster,
+    /// How light of surfaces on each other is followed, where rays are traced.
+    pub paths: Paths,
 }
 
 /// What decides which triangle a pixel sees; all else is the same.
@@ -67,6 +69,7 @@ impl Default for Options {
             coloring: Coloring::default(),
             doppler_at: DopplerAt::default(),
             raster: Raster::Cpu,
+            paths: Paths::default(),
         }
     }
 }
@@ -109,7 +112,7 @@ pub struct Report {
     /// Time for drawing.
     pub shading: Duration,
     /// Rays, where they were traced.
-    pub rays: Option<Count>,
+    pub rays: Option<Traced>,
 }
 
 /// A step of [`render`], for showing progress.
@@ -119,6 +122,13 @@ pub enum Step {
     Cutting(usize),
     /// Everything is drawn.
     Drawing,
+    /// Rays are traced, for so many samples of a pixel so far.
+    Tracing {
+        /// How many are done.
+        done: usize,
+        /// How many there are.
+        of: usize,
+    },
 }
 
 /// Draws a scene: by apparent shading, every body moved to where the camera sees it (Nollert et al. 2000, Eq. 1), cut
@@ -155,8 +165,8 @@ pub fn render_again(
     let triangles = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
     if let Some(tracer) = &prepared.tracer {
         let start = Instant::now();
-        step(Step::Drawing);
-        let rays = tracer.trace(scene, camera, samples.offsets(), shading, film);
+        let look = Look { samples: samples.offsets(), shading, paths: options.paths };
+        let rays = tracer.trace(scene, camera, &look, film, |done, of| step(Step::Tracing { done, of }));
         let (pieces, subdivision) = (triangles, Duration::ZERO);
         return Ok(Report { triangles, pieces, subdivision, shading: start.elapsed(), rays: Some(rays) });
     }

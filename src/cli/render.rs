@@ -143,6 +143,8 @@ impl Progress {
                 scene.bodies.len()
             ),
             Step::Drawing => "drawing".to_owned(),
+            Step::Tracing { of: 1, .. } => "tracing".to_owned(),
+            Step::Tracing { done, of } => format!("tracing, {done} of {of} samples"),
         };
         eprint!("\r\x1b[K{what} … {:.1} s", self.start.elapsed().as_secs_f64());
         self.shown = true;
