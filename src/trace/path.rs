@@ -1,6 +1,6 @@
 //! Light that surfaces throw on each other: paths followed back in time from surface to surface.
 
-use super::emitters::Emitters;
+use super::emitters::{Emitters, Shares};
 use super::random::Random;
 use super::stage::{Stage, Way};
 use crate::color::Coloring;
@@ -48,6 +48,7 @@ pub(super) struct World<'a> {
 pub(super) struct Scratch {
     pub stack: Vec<u32>,
     pub rays: u64,
+    shares: Shares,
 }
 
 /// Rays end so much before the surface they are to reach.
@@ -66,7 +67,8 @@ impl<'a> World<'a> {
         for _ in 0..self.paths.bounces {
             let (point, gloss) = (here.point, here.surface.gloss());
             let base = here.colors.base;
-            self.from_emitter(&here, &mut trail, random, scratch, &mut add);
+            self.emitters.seen_from(self.stage, here.target, point.event(), &mut scratch.shares);
+            self.add_emitter(&here, &mut trail, random, scratch, &mut add);
             let by = [random.unit(), random.unit(), random.unit()];
             let Some(chosen) = gloss::choose(base, gloss, point.normal, point.to_eye, by) else { break };
             trail.meets(here.doppler, chosen.factors, here.surface.beyond());
@@ -83,25 +85,26 @@ impl<'a> World<'a> {
                 }
                 break;
             };
-            self.own_light(&here, &next, &chosen, &trail, &mut add);
+            self.add_own(&here, &next, &chosen, &trail, &scratch.shares, &mut add);
             if !next.surface.is_lit() {
                 break;
             }
-            self.from_lights(&next, &mut trail, scratch, &mut add);
+            self.add_lights(&next, &mut trail, scratch, &mut add);
             here = next;
         }
         sum
     }
 
     /// The surface's own light at the end of a ray whose direction was chosen; shared with what
-    /// [`from_emitter`](Self::from_emitter) gives by which of the two would have found it more often (E. Veach 1997, the
+    /// [`add_emitter`](Self::add_emitter) gives by which of the two would have found it more often (E. Veach 1997, the
     /// power heuristic).
-    fn own_light(
+    fn add_own(
         &self,
         from: &Vertex<'a>,
         at: &Vertex<'a>,
         chosen: &Chosen,
         trail: &Trail,
+        shares: &Shares,
         add: &mut impl FnMut([f64; 3], f64),
     ) {
         let cosine = at.point.normal.dot(at.point.to_eye);
@@ -111,7 +114,7 @@ impl<'a> World<'a> {
             let [a, b, c] = target.tree.leaves[at.leaf as usize].corners;
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let way = at.point.event() - self.stage.between(at.target, from.target) * from.point.event();
-            let other = self.emitters.density(at.target, at.leaf)
+            let other = self.emitters.density(&self.stage.targets, shares, at.target, at.leaf)
                 * per_solid_angle(way.xyz(), normal, from.doppler / at.doppler);
             density * density / (density * density + other * other)
         });
@@ -119,7 +122,7 @@ impl<'a> World<'a> {
     }
 
     /// Light of a point that shines, chosen by chance among all.
-    fn from_emitter(
+    fn add_emitter(
         &self,
         at: &Vertex<'a>,
         trail: &mut Trail,
@@ -127,7 +130,7 @@ impl<'a> World<'a> {
         scratch: &mut Scratch,
         add: &mut impl FnMut([f64; 3], f64),
     ) {
-        let Some(spot) = self.emitters.choose(&self.stage.targets, random) else { return };
+        let Some(spot) = self.emitters.choose(&self.stage.targets, &scratch.shares, random) else { return };
         let target = &self.stage.targets[spot.target];
         let leaf = &target.tree.leaves[spot.leaf as usize];
         if spot.target == at.target && leaf.face == at.face {
@@ -152,7 +155,7 @@ impl<'a> World<'a> {
         if leaf.one_sided && facing.dot(way) > 0.0 {
             return;
         }
-        let density = self.emitters.density(spot.target, spot.leaf)
+        let density = self.emitters.density(&self.stage.targets, &scratch.shares, spot.target, spot.leaf)
             * per_solid_angle(way, facing.normalize_or_zero(), 1.0 / doppler);
         let other = gloss::density(base, gloss, at.point.normal, to_light, at.point.to_eye);
         if !(density > 0.0 && density.is_finite()) {
@@ -180,7 +183,7 @@ impl<'a> World<'a> {
     }
 
     /// Light of all lights that are somewhere.
-    fn from_lights(
+    fn add_lights(
         &self,
         at: &Vertex<'a>,
         trail: &mut Trail,
