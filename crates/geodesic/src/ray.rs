@@ -15,6 +15,7 @@ pub struct LightRay<'a, L> {
     h: f64,
     /// Error and length of the last accepted step.
     before: Option<(f64, f64)>,
+    outward: Option<Outward>,
     off_cone: f64,
     /// Why the integration ended.
     integrated: Option<End>,
@@ -26,6 +27,13 @@ pub struct LightRay<'a, L> {
     infinite: Option<Segment>,
     finished: bool,
     monitor: Monitor,
+}
+
+/// What was before the last step, to foretell what is to come on the way out.
+struct Outward {
+    r: f64,
+    wave: [f64; 4],
+    change: [f64; 4],
 }
 
 /// An accepted step, to be evaluated anywhere within.
@@ -80,6 +88,7 @@ impl<'a, L: Law> LightRay<'a, L> {
             slope: [f64::NAN; 8],
             h: 0.0,
             before: None,
+            outward: None,
             off_cone: 0.0,
             integrated: None,
             steps: VecDeque::new(),
@@ -181,6 +190,11 @@ impl<'a, L: Law> LightRay<'a, L> {
             }
             self.h *= if grow { factor } else { factor.min(1.0) };
             self.before = Some((error.max(1e-6), taken));
+            self.outward = Some(Outward {
+                r: length(&self.state[1..4]),
+                wave: split(&self.state).1,
+                change: split(&self.slope).1,
+            });
             self.state = trial.end;
             self.slope = slope;
             self.shorten();
@@ -241,9 +255,9 @@ impl<'a, L: Law> LightRay<'a, L> {
 
     /// The wave vector at infinity, once what is not known of it is below the tolerance.
     ///
-    /// Where g − η falls like M/r, the derivative ḱ of the wave vector falls like 1/r² along it and like 1/r³
-    /// across it: what is left of its change is ḱ r/|k| and half of that. The error of this is of relative order
-    /// b/r and M/r, b the distance at which the straight ray passes the origin.
+    /// Where g − η falls like M/r, the change of the wave vector falls like A/r² + B/r³; the changes at the last
+    /// two steps' ends tell A and B, and what is left, A/r + B/2r², is added. How well that would have foretold the
+    /// last step tells its error.
     fn escaped(&self) -> Option<FourVector<World>> {
         let place = &self.state[1..4];
         let k = &self.state[5..8];
@@ -251,29 +265,35 @@ impl<'a, L: Law> LightRay<'a, L> {
         if r < self.law.escape_radius() {
             return None;
         }
+        let before = self.outward.as_ref()?;
         let size = length(k);
         let outward = (0..3).map(|i| place[i] * k[i]).sum::<f64>() / (r * size);
-        if outward.is_nan() || outward < 0.9 {
+        if outward.is_nan() || outward < 0.9 || r < 1.2 * before.r {
             return None;
         }
-        let reach = r / size;
-        let change = &self.slope[5..8];
-        let along = (0..3).map(|i| change[i] * k[i]).sum::<f64>() / (size * size);
-        let across: [f64; 3] = std::array::from_fn(|i| change[i] - along * k[i]);
-        let aside = (1.0 - outward * outward).max(0.0).sqrt();
-        let bend = 0.5 * length(&across) * reach / size;
-        let stretch = along.abs() * reach;
-        let time = self.slope[4] * reach;
-        let unknown = bend * (aside + stretch + bend) + (time / size).abs() * (stretch + bend);
-        if unknown > 0.1 * self.accuracy.tolerance {
+        let (now, then) = (size / r, size / before.r);
+        let mut left = [0.0; 4];
+        let mut unknown = 0.0;
+        for (i, left) in left.iter_mut().enumerate() {
+            let (f, g) = (self.slope[4 + i] / (now * now), before.change[i] / (then * then));
+            let b = (g - f) / (then - now);
+            let a = f - b * now;
+            let to_infinity = |from: f64| from * (a + 0.5 * b * from);
+            *left = to_infinity(now);
+            let foretold = to_infinity(then) - *left;
+            unknown += (self.state[4 + i] - before.wave[i] - foretold).powi(2);
+        }
+        // The next term falls like 1/r³ at least, and here is taken to fall by half as much as it could.
+        let unknown = unknown.sqrt() / size * (before.r / r).powi(2);
+        if unknown.is_nan() || unknown > 0.3 * self.accuracy.tolerance {
             return None;
         }
-        let n: [f64; 3] = std::array::from_fn(|i| k[i] + 0.5 * across[i] * reach);
+        let n = [0, 1, 2].map(|i| k[i] + left[1 + i]);
         let norm = length(&n);
-        let before = self.law.wave_vector(&self.state)[0];
-        let frequency = (self.state[4] + time).abs();
+        let sign = self.law.wave_vector(&self.state)[0];
+        let frequency = (self.state[4] + left[0]).abs();
         let [x, y, z] = n.map(|c| c / norm * frequency);
-        Some(FourVector::new(frequency.copysign(before), x, y, z))
+        Some(FourVector::new(frequency.copysign(sign), x, y, z))
     }
 
     /// Follows the ray to its end without laying segments along it; cheaper where nothing is in the way.
@@ -343,58 +363,57 @@ impl<'a, L: Law> LightRay<'a, L> {
         // Step by step as long as the chord may run to the step's end.
         let mut fits: Option<(f64, [f64; 4])> = None;
         let mut last = 0;
-        let (mut too_long, mut sagitta) = loop {
-            if last == self.steps.len() {
-                if self.integrated.is_none() {
-                    self.advance(true);
-                }
-                if last == self.steps.len() {
-                    return fits.map(|fit| self.cut(fit));
-                }
+        let (mut beyond, mut sagitta) = loop {
+            if last == self.steps.len() && self.integrated.is_none() {
+                self.advance(true);
             }
-            let step = &self.steps[last];
+            let Some(step) = self.steps.get(last) else {
+                return fits.map(|(to, end)| self.cut(to, end));
+            };
             let (to, end) = (step.to(), step.samples[SAMPLES - 1]);
             let sagitta = self.sagitta(last, to, &end);
             if sagitta.is_nan() {
                 return None;
             }
             if sagitta > AIM {
-                break (to - self.from, sagitta);
+                break (to, sagitta);
             }
-            fits = Some((to - self.from, end));
+            fits = Some((to, end));
             last += 1;
         };
-        // Then within the step.
-        let step_starts = (self.steps[last].from - self.from).max(0.0);
-        let mut length = too_long * (AIM / sagitta).sqrt();
+        // Then within the step: as far as the square of the length tells, and halfway where that leads astray.
+        let start = self.steps[last].from.max(self.from);
+        let mut to = self.from + (beyond - self.from) * (AIM / sagitta).sqrt();
         for _ in 0..30 {
-            let known = fits.map_or(0.0, |fit| fit.0).max(step_starts);
-            if !(length > known && length < too_long) {
-                length = 0.5 * (known + too_long);
+            let known = fits.map_or(start, |fit| fit.0.max(start));
+            if !(known < to && to < beyond) {
+                to = 0.5 * (known + beyond);
             }
-            let end = self.steps[last].event_at(self.from + length);
-            sagitta = self.sagitta(last, self.from + length, &end);
+            let end = self.steps[last].event_at(to);
+            sagitta = self.sagitta(last, to, &end);
             if sagitta <= AIM {
-                fits = Some((length, end));
+                fits = Some((to, end));
                 if sagitta > 0.88 * AIM {
                     break;
                 }
             } else {
-                too_long = length;
+                beyond = to;
             }
-            if too_long - fits.map_or(0.0, |fit| fit.0) < 0.01 * too_long && fits.is_some() {
+            if fits.is_some_and(|fit| beyond - fit.0 < 0.01 * (beyond - self.from)) {
                 break;
             }
-            length *= (0.96 * AIM / sagitta).sqrt();
+            to = self.from + (to - self.from) * (0.96 * AIM / sagitta).sqrt();
         }
-        fits.map(|fit| self.cut(fit))
+        fits.map(|(to, end)| self.cut(to, end))
     }
 
-    fn cut(&mut self, (length, end): (f64, [f64; 4])) -> Segment {
+    /// The segment to the affine parameter `to`, where the ray is at `end`.
+    fn cut(&mut self, to: f64, end: [f64; 4]) -> Segment {
+        let length = to - self.from;
         let direction: [f64; 4] = std::array::from_fn(|i| (end[i] - self.start[i]) / length);
         let segment =
             Segment { start: self.start.into(), direction: direction.into(), from: self.from, length };
-        self.from += length;
+        self.from = to;
         self.start = end;
         segment
     }
