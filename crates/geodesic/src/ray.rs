@@ -23,6 +23,8 @@ pub struct LightRay<'a, L> {
     /// Where the next chord begins: affine parameter and event.
     from: f64,
     start: [f64; 4],
+    /// Length of the last chord.
+    length: f64,
     /// The last segment's direction where it runs to infinity.
     infinite: Option<Segment>,
     finished: bool,
@@ -66,8 +68,7 @@ impl Step {
 
     #[inline(always)]
     fn event_at(&self, s: f64) -> [f64; 4] {
-        let x = (s - self.from) / self.whole;
-        std::array::from_fn(|i| self.dense.component(i, x))
+        self.dense.first((s - self.from) / self.whole)
     }
 }
 
@@ -94,6 +95,7 @@ impl<'a, L: Law> LightRay<'a, L> {
             steps: VecDeque::new(),
             from: 0.0,
             start,
+            length: 0.0,
             infinite: None,
             finished: false,
             monitor: Monitor::default(),
@@ -360,10 +362,16 @@ impl<'a, L: Law> LightRay<'a, L> {
         while self.steps.front().is_some_and(|step| step.to() <= self.from) {
             self.steps.pop_front();
         }
-        // Step by step as long as the chord may run to the step's end.
         let mut fits: Option<(f64, [f64; 4])> = None;
         let mut last = 0;
+        // Where the step before was long enough for many chords, the next chord is about as long as the last.
+        let within = self.steps.front().filter(|step| self.from + 1.5 * self.length < step.to());
+        let guess = within.filter(|step| self.length > 0.0 && step.from < self.from).map(|step| step.to());
+        // Else step by step as long as the chord may run to the step's end.
         let (mut beyond, mut sagitta) = loop {
+            if let Some(beyond) = guess {
+                break (beyond, AIM * ((beyond - self.from) / self.length).powi(2));
+            }
             if last == self.steps.len() && self.integrated.is_none() {
                 self.advance(true);
             }
@@ -393,7 +401,7 @@ impl<'a, L: Law> LightRay<'a, L> {
             sagitta = self.sagitta(last, to, &end);
             if sagitta <= AIM {
                 fits = Some((to, end));
-                if sagitta > 0.88 * AIM {
+                if sagitta > 0.8 * AIM {
                     break;
                 }
             } else {
@@ -402,7 +410,7 @@ impl<'a, L: Law> LightRay<'a, L> {
             if fits.is_some_and(|fit| beyond - fit.0 < 0.01 * (beyond - self.from)) {
                 break;
             }
-            to = self.from + (to - self.from) * (0.96 * AIM / sagitta).sqrt();
+            to = self.from + (to - self.from) * (0.92 * AIM / sagitta).sqrt();
         }
         fits.map(|(to, end)| self.cut(to, end))
     }
@@ -415,6 +423,7 @@ impl<'a, L: Law> LightRay<'a, L> {
             Segment { start: self.start.into(), direction: direction.into(), from: self.from, length };
         self.from = to;
         self.start = end;
+        self.length = length;
         segment
     }
 }
