@@ -31,15 +31,13 @@ fn processor_time(start: &Instant) -> f64 {
         .map_or_else(|| start.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
 }
 
-/// Seconds of processor time a call takes, the best of many short runs.
+/// Seconds of processor time a call takes, the best of several runs; each is long beside the few milliseconds by
+/// which the system counts.
 fn seconds(mut work: impl FnMut()) -> f64 {
     let clock = Instant::now();
     work();
-    let once = processor_time(&clock);
-    work();
-    let once = processor_time(&clock) - once;
-    let repeats = (0.04 / once).ceil().max(1.0) as u32;
-    (0..15)
+    let repeats = (0.25 / clock.elapsed().as_secs_f64()).clamp(1.0, 1e6) as u32;
+    (0..5)
         .map(|_| {
             let start = processor_time(&clock);
             for _ in 0..repeats {

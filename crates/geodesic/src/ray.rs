@@ -329,9 +329,10 @@ impl<'a, L: Law> LightRay<'a, L> {
             let off: [f64; 4] = std::array::from_fn(|i| at[i] - self.start[i] - chord[i] * (s - self.from));
             let along = dot3(&off, &chord);
             let aside = (dot3(&off, &off) - along * along * across).max(0.0);
-            // Also keeps a NaN, which `max` would drop.
-            let square = (aside * allowed[0]).max(off[0] * off[0] * allowed[1]);
-            worst = if square <= worst { worst } else { square };
+            // Unlike `max`, this keeps a NaN.
+            let (aside, lag) = (aside * allowed[0], off[0] * off[0] * allowed[1]);
+            let square = if aside > lag || aside.is_nan() { aside } else { lag };
+            worst = if square <= worst || worst.is_nan() { worst } else { square };
         };
         for (index, step) in self.steps.iter().enumerate().take(last + 1) {
             let whole = step.from >= self.from && index < last;
@@ -342,7 +343,7 @@ impl<'a, L: Law> LightRay<'a, L> {
             } else {
                 let (first, to) = (step.from.max(self.from), step.to().min(to));
                 // Where the chord is within one step it is smooth and its own middle tells most.
-                const PARTS: u32 = 5;
+                const PARTS: u32 = 4;
                 for part in 1..PARTS {
                     let s = first + (to - first) * (f64::from(part) / f64::from(PARTS));
                     look(s, &step.event_at(s));
@@ -358,7 +359,7 @@ impl<'a, L: Law> LightRay<'a, L> {
     /// The longest chord from where the last one ended that is within the sagitta.
     fn chord(&mut self) -> Option<Segment> {
         // What a chord's samples may miss of its greatest sagitta.
-        const AIM: f64 = 0.95;
+        const AIM: f64 = 0.9;
         while self.steps.front().is_some_and(|step| step.to() <= self.from) {
             self.steps.pop_front();
         }
@@ -368,7 +369,8 @@ impl<'a, L: Law> LightRay<'a, L> {
         let within = self.steps.front().filter(|step| self.from + 1.5 * self.length < step.to());
         let guess = within.filter(|step| self.length > 0.0 && step.from < self.from).map(|step| step.to());
         // Else step by step as long as the chord may run to the step's end.
-        let (mut beyond, mut sagitta) = loop {
+        let mut reached = 0.0;
+        let (beyond, mut sagitta) = loop {
             if let Some(beyond) = guess {
                 break (beyond, AIM * ((beyond - self.from) / self.length).powi(2));
             }
@@ -387,30 +389,40 @@ impl<'a, L: Law> LightRay<'a, L> {
                 break (to, sagitta);
             }
             fits = Some((to, end));
+            reached = sagitta;
             last += 1;
         };
-        // Then within the step: as far as the square of the length tells, and halfway where that leads astray.
-        let start = self.steps[last].from.max(self.from);
-        let mut to = self.from + (beyond - self.from) * (AIM / sagitta).sqrt();
+        // Then within the step: the sagitta grows like a power of the length, like its square as long as nothing
+        // else is known.
+        let length = |to: f64| to - self.from;
+        let mut high = (length(beyond), sagitta);
+        let mut low = fits.map_or((0.0, 0.0), |(to, _)| (length(to), reached));
+        let start = (self.steps[last].from - self.from).max(0.0);
+        let mut long = match guess {
+            Some(_) => self.length,
+            None => foretell(low, high, AIM),
+        };
         for _ in 0..30 {
-            let known = fits.map_or(start, |fit| fit.0.max(start));
-            if !(known < to && to < beyond) {
-                to = 0.5 * (known + beyond);
+            let (least, most) = (low.0.max(start), high.0);
+            if !(long > least && long < most) {
+                long = 0.5 * (least + most);
             }
+            let to = self.from + long;
             let end = self.steps[last].event_at(to);
             sagitta = self.sagitta(last, to, &end);
             if sagitta <= AIM {
                 fits = Some((to, end));
-                if sagitta > 0.8 * AIM {
+                low = (long, sagitta);
+                if sagitta > 0.8 * AIM || high.0 - long < 0.01 * long {
                     break;
                 }
             } else {
-                beyond = to;
+                high = (long, sagitta);
+                if fits.is_some() && high.0 - low.0 < 0.01 * long {
+                    break;
+                }
             }
-            if fits.is_some_and(|fit| beyond - fit.0 < 0.01 * (beyond - self.from)) {
-                break;
-            }
-            to = self.from + (to - self.from) * (0.92 * AIM / sagitta).sqrt();
+            long = foretell(low, high, AIM);
         }
         fits.map(|(to, end)| self.cut(to, end))
     }
@@ -442,6 +454,8 @@ impl<L: Law> Iterator for LightRay<'_, L> {
             return Some(segment);
         }
         self.finished = true;
+        // No chord where there is a ray: it could not be measured.
+        self.integrated.get_or_insert(End::NotANumber);
         let Some(End::Sky { wave_vector }) = self.integrated else { return None };
         let segment = Segment {
             start: self.start.into(),
@@ -479,6 +493,17 @@ impl From<Stop> for End {
             Stop::Horizon => Self::Horizon,
             Stop::Edge => Self::Edge,
         }
+    }
+}
+
+/// The length at which the sagitta will be nine tenths of `aim`, from two lengths with their sagittas, one too short
+/// and one too long.
+fn foretell(low: (f64, f64), high: (f64, f64), aim: f64) -> f64 {
+    let wanted = 0.9 * aim;
+    if low.1 > 0.0 && low.1 < wanted {
+        low.0 * (high.0 / low.0).powf((wanted / low.1).ln() / (high.1 / low.1).ln())
+    } else {
+        high.0 * (wanted / high.1).sqrt()
     }
 }
 
