@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Gyoto on the second task of benches/geodesics.rs: Kerr a = 0.9, camera at r = 1000 M and 60 degrees from the
-axis, 48 x 48 rays within 0.02 rad, to the first crossing of a thin disc from 2.4 M to 40 M.
+axis, 32 x 32 rays within 0.02 rad, to the first crossing of a thin disc from 2.4 M to 40 M.
 
     python3 crates/geodesic/benches/peers/gyoto.py        (Debian: apt install gyoto-bin)
 
@@ -78,7 +78,7 @@ def trace(folder, side, extra, rmax):
 
 
 def main():
-    side = 48
+    side = 32
     ways = [
         ("default", "", "1000"),
         ("fehlberg78 1e-6", options("runge_kutta_fehlberg78", "1e-6", "0.3"), "60"),
