@@ -55,6 +55,7 @@ pub mod export;
 pub mod exposure;
 pub mod film;
 pub mod light;
+pub mod measure;
 pub mod picture;
 pub mod plan;
 pub mod raster;
