@@ -41,8 +41,9 @@ pub struct Figures {
 pub struct Disagreement {
     /// How many.
     pub pixels: usize,
-    /// Of them, those where what is seen instead is seen by none of the reference's nine pixels around: no outline that
-    /// is off by up to a pixel explains them, unless by something that is too thin for the reference to see.
+    /// Of them, those where what is seen instead is seen by none of the reference's nine pixels around, nor do its
+    /// [corners](super::Corners), where they are known, see several things: no outline that is off by up to a pixel
+    /// explains them, unless by something that is too thin for the reference to see.
     pub beyond: usize,
     /// The first of the latter, column and row from the upper left, at most [`SHOWN`](Self::SHOWN).
     pub where_beyond: Vec<[u32; 2]>,
@@ -194,6 +195,7 @@ fn radiance(film: &Film, expected: &Film, peak: f64, pixels: &mut dyn Iterator<I
 
 #[cfg(test)]
 mod tests {
+    use super::super::Corners;
     use super::*;
 
     const SIZE: [u32; 2] = [8, 6];
@@ -255,6 +257,36 @@ mod tests {
         let mut other = film();
         other.body[at(2, 2)] = 7;
         assert_eq!(compare(&other).whole.silhouette.unwrap().beyond, 1);
+    }
+
+    /// Something thin, which no pixel's centre sees, but a corner.
+    #[test]
+    fn corners_tell_of_what_centres_do_not_see() {
+        let thin = Film::new(SIZE[0], SIZE[1]);
+        let mut met = thin.clone();
+        (met.body[at(4, 4)], met.face[at(4, 4)]) = (3, 5);
+        let silhouette = |corners: Option<Corners>| {
+            let reference = Reference { corners, ..Reference::from(thin.clone()) };
+            Comparison::new(&reference, &met).unwrap().whole.silhouette.unwrap()
+        };
+        assert_eq!((silhouette(None).pixels, silhouette(None).beyond), (1, 1));
+        let corners = |corner: &Film| {
+            Some(Corners::new(&thin, &[thin.clone(), corner.clone(), thin.clone(), thin.clone()]))
+        };
+        assert_eq!(silhouette(corners(&thin)).beyond, 1);
+        assert_eq!((silhouette(corners(&met)).pixels, silhouette(corners(&met)).beyond), (1, 0));
+        // Of faces likewise, and only there.
+        let mut other = film();
+        other.face[at(2, 4)] = 9;
+        let mut corner = film();
+        corner.face[at(2, 4)] = 9;
+        let edges = |corner: &Film, got: &Film| {
+            let corners = Corners::new(&film(), &[film(), film(), film(), corner.clone()]);
+            let reference = Reference { corners: Some(corners), ..Reference::from(film()) };
+            Comparison::new(&reference, got).unwrap().whole.edges.unwrap()
+        };
+        assert_eq!((edges(&film(), &other).beyond, edges(&corner, &other).beyond), (1, 0));
+        assert_eq!(edges(&corner, &film()).pixels, 0);
     }
 
     #[test]

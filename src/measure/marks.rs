@@ -1,4 +1,4 @@
-use super::Reference;
+use super::{Corners, Reference};
 use crate::film::{Film, NOTHING};
 use std::collections::HashMap;
 
@@ -7,13 +7,16 @@ use std::collections::HashMap;
 pub enum Mark {
     /// The same body and the same face, as far as they are known.
     Same,
-    /// Another body, which the reference sees in one of the eight pixels around: an outline is off by a pixel at most.
+    /// Another body, which the reference sees in one of the eight pixels around, or where its corners see several: an
+    /// outline is off by a pixel at most.
     Silhouette,
-    /// Another body, which the reference sees in none of the nine pixels.
+    /// Another body, which the reference sees in none of the nine pixels, nor do the pixel's corners see several.
     BeyondSilhouette,
-    /// Another face of the same body, which the reference sees in one of the eight pixels around.
+    /// Another face of the same body, which the reference sees in one of the eight pixels around, or where its corners see
+    /// several.
     Edge,
-    /// Another face of the same body, which the reference sees in none of the nine pixels.
+    /// Another face of the same body, which the reference sees in none of the nine pixels, nor do the pixel's corners see
+    /// several.
     BeyondEdge,
     /// The reference has no finite numbers there.
     LeftOut,
@@ -50,19 +53,24 @@ pub(super) fn marks(reference: &Reference, film: &Film) -> (Vec<Mark>, Faces) {
     }
     let (faces, how) = faces_as_in(reference, film);
     let expected = &reference.film;
+    let parted = |same: fn(&Corners) -> &Vec<bool>, i: usize| {
+        reference.corners.as_ref().is_some_and(|corners| !same(corners)[i])
+    };
     let mark = |i: usize| {
         if left_out(i) {
             return Mark::LeftOut;
         }
         let is_near = |same: &dyn Fn(usize) -> bool| around(film, i).any(|n| !left_out(n) && same(n));
         if film.body[i] != expected.body[i] {
-            let near = is_near(&|n| expected.body[n] == film.body[i]);
+            let near =
+                parted(|corners| &corners.same_body, i) || is_near(&|n| expected.body[n] == film.body[i]);
             return if near { Mark::Silhouette } else { Mark::BeyondSilhouette };
         }
         if how == Faces::Unknown || film.body[i] == NOTHING || faces[i] == expected.face[i] {
             return Mark::Same;
         }
-        let near = is_near(&|n| expected.body[n] == film.body[i] && expected.face[n] == faces[i]);
+        let is_it = |n: usize| expected.body[n] == film.body[i] && expected.face[n] == faces[i];
+        let near = parted(|corners| &corners.same_face, i) || is_near(&is_it);
         if near { Mark::Edge } else { Mark::BeyondEdge }
     };
     ((0..film.body.len()).map(mark).collect(), how)

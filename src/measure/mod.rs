@@ -10,4 +10,4 @@ mod reference;
 pub use comparison::{Comparison, Disagreement, Figures, Radiance, SizesDiffer, Worst};
 pub use flip::{FlipError, Perceived, flip};
 pub use marks::{Faces, Mark};
-pub use reference::{Known, Reference};
+pub use reference::{Corners, Known, Reference};

@@ -148,7 +148,7 @@ fn reference(
         return Err(Fault::Unfit("no pixel has finite numbers in all channels".into()));
     }
     let inner = values.remove("inner").map(|inner| inner.into_iter().map(|v| v == 1.0).collect());
-    Ok(Reference { film, known, inner, left_out, renumbered: true })
+    Ok(Reference { film, known, inner, corners: None, left_out, renumbered: true })
 }
 
 #[cfg(test)]

@@ -1,9 +1,12 @@
 use std::time::{Duration, Instant};
+use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::light::DopplerAt;
+use terrell::measure::Corners;
 use terrell::plan::Method;
 use terrell::render::{Options, Raster, RenderError, Report, render_again};
 use terrell::scene::{Camera, Scene};
+use terrell::trace::Tracer;
 
 /// A way to draw a scene.
 pub struct Way {
@@ -82,6 +85,25 @@ impl Way {
         }
         Ok(Drawn { film, report, once: median(once), picture: median(picture) })
     }
+}
+
+/// What rays through the corners of pixels see, of a film of what those through their centres see.
+pub fn corners(
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    centres: &Film,
+) -> Result<Corners, RenderError> {
+    // Whatever it is, it is asked what it is only.
+    let options = Options { coloring: Coloring::Doppler, ..WAYS[0].options(options) };
+    let prepared = options.prepare(scene, [camera])?;
+    let (shading, tracer) = (prepared.shading.seen_by(&camera.observer), Tracer::new(scene));
+    let films = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|corner| {
+        let mut film = Film::new(0, 0);
+        tracer.trace(scene, camera, &[corner], &shading, &mut film);
+        film
+    });
+    Ok(Corners::new(centres, &films))
 }
 
 fn median(mut times: Vec<Duration>) -> Duration {

@@ -9,7 +9,7 @@ use super::report::ReportFlags;
 use super::values::{number, when};
 use super::{source, summary};
 use clap::Args;
-use methods::{WAYS, Way};
+use methods::{WAYS, Way, corners};
 use pictures::{Pictures, pair};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
@@ -30,7 +30,8 @@ use terrell::tone::Development;
 /// if there are several; nothing else in it is touched.
 ///
 /// Silhouette pixels see another body than the reference; those beyond are more than a pixel off: what they see, the
-/// reference sees in none of the nine pixels around. Edge pixels see another face of the same body. Distance, Doppler
+/// reference sees in none of the nine pixels around, and (where it is traced) the pixel's corners see what its centre sees.
+/// Edge pixels see another face of the same body. Distance, Doppler
 /// factor: worst relative difference where both see the same face. Light: relative RMS, worst over the reference's peak,
 /// and the latter where both see the same face. FLIP: mean difference an eye sees, 0 to 1, developed alike.
 #[derive(Args)]
@@ -245,7 +246,9 @@ impl Compare {
         let reference = match (given, drawn.first_mut()) {
             (Some(given), _) => given,
             (None, Some((_, Ok(traced)))) => {
-                own = Reference::from(std::mem::replace(&mut traced.film, Film::new(0, 0)));
+                let film = std::mem::replace(&mut traced.film, Film::new(0, 0));
+                let corners = Some(corners(scene, camera, options, &film)?);
+                own = Reference { corners, ..Reference::from(film) };
                 &own
             }
             (None, first) => {
@@ -360,6 +363,8 @@ impl Compare {
         }
         match reference.left_out.iter().filter(|left| **left).count() {
             0 => {}
+            1 => notes
+                .push("one pixel of the reference has numbers that are not finite; it is left out".into()),
             n => notes.push(format!(
                 "{n} pixels of the reference have numbers that are not finite; they are left out"
             )),

@@ -12,19 +12,15 @@ const MARKS: [(Mark, [u8; 3], &str); 5] = [
     (
         Mark::Silhouette,
         [255, 214, 0],
-        "another body, seen by the reference in a pixel beside it (silhouette)",
+        "another body, within a pixel of where the reference sees it (silhouette)",
     ),
+    (Mark::BeyondSilhouette, [255, 40, 40], "another body, beyond that"),
     (
-        Mark::BeyondSilhouette,
-        [255, 40, 40],
-        "another body, seen by the reference in none of the nine pixels around",
+        Mark::Edge,
+        [70, 160, 255],
+        "another face of the same body, within a pixel of where the reference sees it (edge)",
     ),
-    (Mark::Edge, [70, 160, 255], "another face, seen by the reference in a pixel beside it"),
-    (
-        Mark::BeyondEdge,
-        [255, 60, 255],
-        "another face, seen by the reference in none of the nine pixels around",
-    ),
+    (Mark::BeyondEdge, [255, 60, 255], "another face of the same body, beyond that"),
     (Mark::LeftOut, [70, 70, 130], "the reference has no finite numbers"),
 ];
 
