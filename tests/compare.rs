@@ -3,6 +3,8 @@
 mod common;
 #[path = "common/program.rs"]
 mod program;
+#[path = "common/scene_json.rs"]
+mod scene_json;
 
 use common::reference;
 use program::{bad, good, pixels, terrell};
@@ -138,11 +140,41 @@ fn files_are_compared_with() {
     assert_eq!(apparent["difference"]["radiance"]["worst_over_peak"], 0.0);
     assert_eq!(apparent["difference"]["faces_by"], "number");
     assert!(told["methods"][0]["difference"]["silhouette"]["pixels"].as_u64().unwrap() > 0);
-    // Another scene, of which it knows bodies, faces of its own numbers, and inner pixels.
-    let file = reference("scenes/cube_b090.exr");
-    let words = ["compare", "cube", "--reference", file.to_str().unwrap(), "--repeats=1", "--no-pictures"];
-    let said = good(&words, here);
-    assert!(said.contains("160x120") && said.contains("trace, inner pixels"), "{said}");
+}
+
+/// Bodies as we number them, faces of polygons, and `inner`: where no outline is near, nothing differs but by rounding.
+#[test]
+fn the_independent_reference_is_compared_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    for name in ["cube_b090", "opposed_b090"] {
+        let text = std::fs::read_to_string(reference(&format!("scenes/{name}.json"))).unwrap();
+        let scene = scene_json::write_scene(&serde_json::from_str(&text).unwrap(), here).unwrap();
+        let file = reference(&format!("scenes/{name}.exr"));
+        let words =
+            ["compare", scene.to_str().unwrap(), "--reference", file.to_str().unwrap(), "--color=flat"];
+        let said = good(&[&words[..], &["--repeats=1", "-o", name]].concat(), here);
+        assert!(said.contains("160x120") && said.contains("trace, inner pixels"), "{said}");
+        let told = &json(&here.join(name).join("compare.json"))["scenes"][0];
+        for method in &told["methods"].as_array().unwrap()[..2] {
+            let found = &method["difference"];
+            assert_eq!(found["faces_by"], "what most of their pixels see");
+            assert_eq!(found["silhouette"]["beyond_a_pixel"], 0);
+            let inner = &found["inner"];
+            assert_eq!(
+                [&inner["silhouette"]["pixels"], &inner["edges"]["pixels"]],
+                [0, 0],
+                "{name}: {method}"
+            );
+            // Both are rounded to f32.
+            for what in ["distance", "doppler"] {
+                let worst = inner[what]["worst_relative"].as_f64().unwrap();
+                assert!(worst <= 2.0 * f64::from(f32::EPSILON), "{name}, {what}: {worst}");
+            }
+            // So is light, D three times.
+            assert!(inner["radiance"]["worst_over_peak"].as_f64().unwrap() <= 1e-6, "{name}: {inner}");
+        }
+    }
 }
 
 #[test]

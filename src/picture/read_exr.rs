@@ -1,5 +1,5 @@
 use crate::film::{Film, NOTHING};
-use crate::measure::{Known, Reference};
+use crate::measure::{Corners, Known, Reference};
 use crate::scene::{MAX_PIXELS, MAX_SIDE, read_plain};
 use exr::prelude::*;
 use std::collections::HashMap;
@@ -147,8 +147,11 @@ fn reference(
     if left_out.iter().all(|left| *left) {
         return Err(Fault::Unfit("no pixel has finite numbers in all channels".into()));
     }
-    let inner = values.remove("inner").map(|inner| inner.into_iter().map(|v| v == 1.0).collect());
-    Ok(Reference { film, known, inner, corners: None, left_out, renumbered: true })
+    let inner: Option<Vec<bool>> =
+        values.remove("inner").map(|inner| inner.into_iter().map(|v| v == 1.0).collect());
+    // Of what the corners see, faces or bodies, it does not say which.
+    let corners = inner.as_ref().map(|inner| Corners { same_body: inner.clone(), same_face: inner.clone() });
+    Ok(Reference { film, known, inner, corners, left_out, renumbered: true })
 }
 
 #[cfg(test)]
