@@ -1,5 +1,7 @@
+mod folders;
 mod methods;
 mod pictures;
+mod progress;
 mod table;
 mod told;
 
@@ -9,10 +11,12 @@ use super::report::ReportFlags;
 use super::values::{number, when};
 use super::{source, summary};
 use clap::Args;
+use folders::{Folders, check_folder, folder_names};
 use methods::{WAYS, Way, corners};
 use pictures::{Pictures, pair};
+use progress::Progress;
 use serde_json::json;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use terrell::film::Film;
@@ -399,79 +403,4 @@ impl Compare {
 
 fn failures(rows: &[Row]) -> Vec<String> {
     rows.iter().filter_map(|row| row.drawn.as_ref().err().cloned()).collect()
-}
-
-fn check_folder(folder: &Path) -> Result<(), Fault> {
-    if folder.exists() && !folder.is_dir() {
-        return Err(format!("cannot write to {}: it is not a folder", folder.display()).into());
-    }
-    match folder.parent() {
-        Some(parent) if parent != Path::new("") && !parent.is_dir() => {
-            Err(format!("cannot make {}: there is no folder {}", folder.display(), parent.display()).into())
-        }
-        _ => Ok(()),
-    }
-}
-
-/// A folder's name for every scene.
-fn folder_names(scenes: &[Scene]) -> Result<Vec<String>, Fault> {
-    let mut names: Vec<String> = Vec::new();
-    for scene in scenes {
-        let name = scene.name.replace(['/', '\\'], "_");
-        if names.contains(&name) {
-            return Err(format!("two scenes are called '{name}'; compare them one by one").into());
-        }
-        names.push(name);
-    }
-    Ok(names)
-}
-
-/// Folders that were made here; without files in them they go again.
-#[derive(Default)]
-struct Folders(Vec<PathBuf>);
-
-impl Folders {
-    fn make(&mut self, folder: &Path) -> Result<(), Fault> {
-        if !folder.is_dir() {
-            std::fs::create_dir(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
-            self.0.push(folder.to_owned());
-        }
-        Ok(())
-    }
-
-    fn keep(mut self) {
-        self.0.clear();
-    }
-}
-
-impl Drop for Folders {
-    fn drop(&mut self) {
-        for folder in self.0.iter().rev() {
-            // Whatever is in it stays, and so does it.
-            let _ = std::fs::remove_dir(folder);
-        }
-    }
-}
-
-/// What is going on, on a terminal only.
-struct Progress {
-    terminal: bool,
-}
-
-impl Progress {
-    fn new(quiet: bool) -> Self {
-        Self { terminal: !quiet && std::io::stderr().is_terminal() }
-    }
-
-    fn show(&self, what: &str) {
-        if self.terminal {
-            eprint!("\r\x1b[K{what} …");
-        }
-    }
-
-    fn clear(&self) {
-        if self.terminal {
-            eprint!("\r\x1b[K");
-        }
-    }
 }
