@@ -256,6 +256,14 @@ impl LookFlags {
         Ok(why)
     }
 
+    /// For what draws by several methods: that none of them is asked for.
+    pub fn check_no_method(&self) -> Result<(), Fault> {
+        if self.method != MethodFlag::Auto || self.raster != RasterFlag::Cpu {
+            return Err("--method and --raster choose one way to draw, and here all are compared; --methods says which of them".into());
+        }
+        Ok(())
+    }
+
     /// What the flags say of the projection.
     pub fn set_lens(&self, view: &mut View) {
         if let Some(camera) = self.camera {
