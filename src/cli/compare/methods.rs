@@ -6,7 +6,7 @@ use terrell::measure::Corners;
 use terrell::plan::Method;
 use terrell::render::{Options, Raster, RenderError, Report, render_again};
 use terrell::scene::{Camera, Scene};
-use terrell::trace::Tracer;
+use terrell::trace::{Look, Paths, Tracer};
 
 /// A way to draw a scene.
 pub struct Way {
@@ -100,7 +100,8 @@ pub fn corners(
     let (shading, tracer) = (prepared.shading.seen_by(&camera.observer), Tracer::new(scene));
     let films = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|corner| {
         let mut film = Film::new(0, 0);
-        tracer.trace(scene, camera, &[corner], &shading, &mut film);
+        let look = Look { samples: &[corner], shading: &shading, paths: Paths::default() };
+        tracer.trace(scene, camera, &look, &mut film, |_, _| ());
         film
     });
     Ok(Corners::new(centres, &films))
