@@ -1,5 +1,6 @@
 //! Which method a scene needs.
 
+use crate::color::Coloring;
 use crate::light::has_shadows;
 use crate::scene::{Material, Scene};
 
@@ -45,8 +46,10 @@ pub fn has_reflections(scene: &Scene) -> bool {
 }
 
 /// The cheapest method that is right for a scene, and why.
-pub fn cheapest(scene: &Scene) -> (Method, &'static str) {
-    if has_reflections(scene) {
+pub fn cheapest(scene: &Scene, coloring: Coloring) -> (Method, &'static str) {
+    if coloring == Coloring::Doppler {
+        (Method::Apparent, "the Doppler factor needs no light")
+    } else if has_reflections(scene) {
         (Method::Trace, "surfaces light each other")
     } else if has_shadows(scene) {
         (Method::Trace, "lights cast shadows")

@@ -235,7 +235,7 @@ impl LookFlags {
             (MethodFlag::Trace, None) => (Method::Trace, None),
             (MethodFlag::Auto, None) if self.bounces.is_some_and(|n| n > 0) => (Method::Trace, None),
             (MethodFlag::Auto, None) => {
-                let (method, why) = cheapest(scene);
+                let (method, why) = cheapest(scene, options.coloring);
                 (method, Some(why))
             }
         };

@@ -19,6 +19,7 @@ use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::measure::{Comparison, Faces, Known, Perceived, Reference, flip};
 use terrell::picture::{self, Pending};
@@ -196,7 +197,7 @@ impl Compare {
     fn open(&self, reference: Option<&Reference>) -> Result<Vec<Scene>, Fault> {
         let shipped = builtin_scenes()
             .iter()
-            .filter(|scene| self.all && cheapest(&scene.scene()).0 == Method::Apparent);
+            .filter(|scene| self.all && cheapest(&scene.scene(), Coloring::Spectral).0 == Method::Apparent);
         let names = self.scenes.iter().map(String::as_str).chain(shipped.map(|scene| scene.name));
         let names: Vec<&str> = names.collect();
         if reference.is_some() && names.len() != 1 {
