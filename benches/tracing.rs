@@ -1,15 +1,17 @@
 //! How fast rays are: millions a second on one core, from the camera and to a lamp, with and without AVX2, on the gate
 //! and on spheres of triangles, all moving at 0.9c.
 //!
-//! `cargo bench --bench tracing`
+//! `cargo bench --bench tracing`; with `-- --dump DIR` it writes the meshes and the rays for other programs instead (see
+//! benches/peers/embree.cpp).
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use std::path::Path;
 use std::time::Instant;
 use terrell::color::Coloring;
 use terrell::film::{Film, Samples};
 use terrell::geodesic::{Celerity, Event, Tetrad};
-use terrell::light::Shading;
-use terrell::relativity::Motion;
+use terrell::light::{Facet, SeenShading, Shading};
+use terrell::relativity::{ApparentMap, Motion};
 use terrell::scene::{Body, Camera, Lens, Light, LightKind, Mesh, Projection, Scene, View, shapes};
 use terrell::spectrum::Spectrum;
 use terrell::trace::{Look, Paths, Tracer};
@@ -49,7 +51,59 @@ fn median_seconds(mut run: impl FnMut()) -> f64 {
     times[REPEATS / 2]
 }
 
+/// NAME.mesh: three corners a triangle. NAME.primary, NAME.shadow: origin, direction and length of every ray, tile by tile.
+/// All f32, in the rest frame.
+fn write_rays(
+    folder: &Path,
+    name: &str,
+    scene: &Scene,
+    camera: &Camera,
+    tracer: &Tracer,
+    luminous: &SeenShading<'_>,
+    lit: &SeenShading<'_>,
+) -> std::io::Result<()> {
+    let bytes = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    let vector = |v: DVec3| v.as_vec3().to_array();
+    let mesh = &scene.bodies[0].mesh;
+    let corners: Vec<f32> =
+        (0..mesh.triangles.len()).flat_map(|t| mesh.corners(t)).flat_map(vector).collect();
+    std::fs::write(folder.join(format!("{name}.mesh")), bytes(&corners))?;
+    let samples = Samples::new(1);
+    let mut film = Film::new(0, 0);
+    let look = Look { samples: samples.offsets(), shading: luminous, paths: Paths::default() };
+    tracer.trace(scene, camera, &look, &mut film, |_, _| ());
+    let map = ApparentMap::new(&scene.bodies[0].motion, &camera.observer);
+    let (sky, eye) = (map.rest_sky(), map.observer_rest());
+    let [mut primary, mut shadow] = [vec![], vec![]];
+    let lens = &camera.lens;
+    for (top, left) in
+        (0..lens.height()).step_by(8).flat_map(|y| (0..lens.width()).step_by(8).map(move |x| (y, x)))
+    {
+        for (y, x) in (top..top + 8).flat_map(|y| (left..left + 8).map(move |x| (y, x))) {
+            let v = lens.direction(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)).unwrap();
+            let boosted = sky.boosted(v, v.length()).along;
+            let v_rest = map.rotate_back(v + (boosted - v.dot(sky.axis())) * sky.axis());
+            primary.extend(vector(eye).into_iter().chain(vector(v_rest)).chain([f32::INFINITY]));
+            let i = (y * lens.width() + x) as usize;
+            if film.body[i] < 0 {
+                continue;
+            }
+            let facet =
+                Facet::new(mesh, film.face[i] as usize, mesh.corners(film.face[i] as usize).map(|c| c - eye));
+            let normal = facet.normal();
+            let at = v_rest * (normal.dot(facet.corners()[0]) / normal.dot(v_rest));
+            if let Some(approach) = lit.approach(0, 0, &facet.point(at)) {
+                shadow.extend(vector(eye + at).into_iter().chain(vector(approach.back.xyz())).chain([1.0]));
+            }
+        }
+    }
+    std::fs::write(folder.join(format!("{name}.primary")), bytes(&primary))?;
+    std::fs::write(folder.join(format!("{name}.shadow")), bytes(&shadow))
+}
+
 fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let dump = arguments.iter().position(|a| a == "--dump").map(|i| Path::new(&arguments[i + 1]).to_owned());
     let lens = Lens::new(Projection::Pinhole, 45.0, 1280, 720).unwrap();
     let celerity = Celerity::from_beta(DVec3::X * 0.9).unwrap();
     let motion = Motion { celerity, origin: Event::new(-3.0, 0.0, 3.0, 0.0) };
@@ -88,6 +142,10 @@ fn main() {
             scene.lights.push(lamp.clone());
             let lit = Shading::new(&scene, [&observer], Coloring::Geometry).unwrap();
             let (luminous, lit) = (luminous.seen_by(&observer), lit.seen_by(&observer));
+            if let Some(folder) = &dump {
+                write_rays(folder, &label, &scene, &camera, &tracer, &luminous, &lit).unwrap();
+                return;
+            }
             let mut primary = [0.0; 2];
             let mut shadow = [0.0; 2];
             for (i, tracer) in [&tracer, &base].into_iter().enumerate() {

@@ -21,6 +21,8 @@ pub(super) struct Tile {
     paths: path::Scratch,
     top: u32,
     sights: Vec<Sight>,
+    /// Bodies that may be seen in the tile.
+    met: Vec<usize>,
     rays: Vec<Directed>,
     /// Of which lines of sight they are.
     numbers: Vec<usize>,
@@ -110,8 +112,18 @@ impl Tile {
         let width = job.lens.width();
         let height = SIDE.min(job.lens.height() - top);
         for left in (0..width).step_by(SIDE as usize) {
+            let size = [SIDE.min(width - left), height];
+            let (axis, half_angle) = cone(job.lens, [left, top], size);
+            self.met.clear();
+            let targets = job.stage.targets.iter().enumerate();
+            self.met.extend(targets.filter(|(_, t)| t.outline.meets(axis, half_angle)).map(|(i, _)| i));
+            if self.met.is_empty() {
+                // Rays they are all the same.
+                self.count.primary += pass.len() as u64 * u64::from(size[0] * size[1]);
+                continue;
+            }
             for number in pass.clone() {
-                self.look(job, [left, top], [SIDE.min(width - left), height], job.samples[number]);
+                self.look(job, [left, top], size, job.samples[number]);
                 self.find(job);
                 self.light(job);
                 done(self, number);
@@ -146,15 +158,9 @@ impl Tile {
 
     /// The nearest triangle of any body for every line of sight.
     fn find(&mut self, job: &Job<'_>) {
-        let middle: DVec3 = self.sights.iter().map(|s| s.direction / s.length).sum();
-        let axis = middle.normalize_or(DVec3::Z);
-        let chord = |s: &Sight| (s.direction / s.length - axis).length_squared();
-        let chord = self.sights.iter().map(chord).fold(0.0, f64::max).sqrt();
-        let half_angle = 2.0 * (0.5 * chord).min(1.0).asin();
-        for (index, target) in job.stage.targets.iter().enumerate() {
-            if !target.outline.meets(axis, half_angle) {
-                continue;
-            }
+        for met in 0..self.met.len() {
+            let index = self.met[met];
+            let target = &job.stage.targets[index];
             self.rays.clear();
             let rest = |s: &Sight| Directed {
                 direction: target.rest_direction(s.direction, s.length),
@@ -312,6 +318,27 @@ impl Tile {
             }
         }
     }
+}
+
+/// A circle of directions around all lines of sight of a tile.
+fn cone(lens: &Lens, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> (DVec3, f64) {
+    let direction = |x: f64, y: f64| {
+        let at = DVec2::new(f64::from(left) + x, f64::from(top) + y);
+        lens.direction(at).map(DVec3::normalize)
+    };
+    let (width, height) = (f64::from(width), f64::from(height));
+    let Some(axis) = direction(0.5 * width, 0.5 * height) else { return (DVec3::Z, std::f64::consts::PI) };
+    let mut chord = 0f64;
+    // Corners and the middles of sides: what bulges between them is little, in pixels.
+    for x in [0.0, 0.5, 1.0] {
+        for y in [0.0, 0.5, 1.0] {
+            let Some(d) = direction(x * width, y * height) else { return (DVec3::Z, std::f64::consts::PI) };
+            chord = chord.max((d - axis).length());
+        }
+    }
+    let half_angle = 2.0 * (0.5 * chord).min(1.0).asin();
+    // A tile of a picture of few pixels is a large part of the sky.
+    if half_angle > 0.2 { (DVec3::Z, std::f64::consts::PI) } else { (axis, 1.2 * half_angle) }
 }
 
 impl Sight {
