@@ -195,8 +195,14 @@ impl Beam {
             let node = &tree.nodes[index as usize];
             if node.count == 0 {
                 let first = node.first;
-                let a = boxes.enters(&tree.nodes[first as usize]);
-                let b = boxes.enters(&tree.nodes[first as usize + 1]);
+                let [one, other] = [&tree.nodes[first as usize], &tree.nodes[first as usize + 1]];
+                let (a, b) = (boxes.enters(one), boxes.enters(other));
+                if a.is_some() {
+                    tree.fetch(one);
+                }
+                if b.is_some() {
+                    tree.fetch(other);
+                }
                 match (a, b) {
                     // The nearer one on top.
                     (Some(a), Some(b)) if a <= b => stack.extend([(first + 1, b), (first, a)]),
