@@ -112,11 +112,14 @@ fn main() {
     let samples = Samples::new(1);
     let lamp = Light {
         name: "lamp".into(),
-        kind: LightKind::Point { position: DVec3::new(1.0, -1.0, 2.0) },
+        // At rest beside the body, near where the camera is then, so that nearly all that is seen faces it.
+        kind: LightKind::Point {
+            position: ApparentMap::new(&motion, &observer).observer_rest() + DVec3::new(0.3, -0.2, 0.4),
+        },
         color: [1.0; 3],
         spectrum: Spectrum::default(),
         strength: 1.0,
-        motion: Motion::at_rest(DVec3::ZERO),
+        motion,
     };
     println!("one thread, 1280x720 rays, median of {REPEATS}; M rays/s");
     println!(

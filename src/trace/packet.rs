@@ -232,7 +232,9 @@ mod tests {
                 for _ in 0..100 {
                     let mut point =
                         |reach: f64| DVec3::from_array([0; 3].map(|_| random() - 0.5)) * reach * scale;
-                    let mut rays = [Ray::nowhere(&map); PACKET];
+                    let origin = Origin::of_observer(&map);
+                    let nowhere = Ray { origin, direction: DVec3::X, range: [0.0; 2], but: None };
+                    let mut rays = [nowhere; PACKET];
                     for (i, ray) in rays.iter_mut().enumerate() {
                         let (from, to) = (point(3.0), point(3.0));
                         let at = from - map.observer_rest();

@@ -3,7 +3,6 @@
 use super::beam::{inverse_unit, owns};
 use super::origin::Origin;
 use super::tree::{Leaf, Node, Tree};
-use crate::relativity::ApparentMap;
 use glam::DVec3;
 
 /// A ray in the rest frame of a body: origin + s·direction.
@@ -26,12 +25,7 @@ pub(super) struct Hit {
     pub leaf: u32,
 }
 
-impl<'a> Ray<'a> {
-    /// One that hits nothing.
-    pub fn nowhere(map: &'a ApparentMap) -> Self {
-        Self { origin: Origin::of_observer(map), direction: DVec3::X, range: [0.0; 2], but: None }
-    }
-
+impl Ray<'_> {
     /// The nearest triangle.
     pub fn nearest(&self, tree: &Tree, stack: &mut Vec<u32>) -> Option<Hit> {
         let mut nearest = None;

@@ -107,11 +107,8 @@ impl Stage {
         let mut blocked = 0;
         let all = (1 << ways.len()) - 1;
         for (index, target) in self.targets.iter().enumerate() {
-            let ray = |way: &Way| self.ray(way, index, target);
-            let mut rays = [Ray::nowhere(&target.map); PACKET];
-            for (to, way) in rays.iter_mut().zip(ways) {
-                *to = ray(way);
-            }
+            let rays: [Ray<'_>; PACKET] =
+                std::array::from_fn(|i| self.ray(&ways[i.min(ways.len() - 1)], index, target));
             blocked |= packet.blocked(&rays[..ways.len()], &target.tree, vectors);
             if blocked == all {
                 break;
@@ -126,6 +123,7 @@ impl Stage {
     }
 
     /// A way in the rest frame of a target.
+    #[inline]
     pub fn ray<'a>(&self, way: &Way, index: usize, target: &'a Target) -> Ray<'a> {
         let receiver = &self.targets[way.from];
         let (at, back) = if target.motion == receiver.motion {

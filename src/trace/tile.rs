@@ -28,8 +28,9 @@ pub(super) struct Tile {
     numbers: Vec<usize>,
     /// What of the lines of sight may be lit.
     points: Vec<(usize, Point)>,
-    ways: Vec<(usize, Way)>,
-    eight: Vec<Way>,
+    ways: Vec<Way>,
+    /// Of which lines of sight they are.
+    from: Vec<usize>,
     lit: Vec<u64>,
     count: Count,
 }
@@ -237,6 +238,7 @@ impl Tile {
         }
         for light in 0..lights {
             self.ways.clear();
+            self.from.clear();
             for (number, point) in &self.points {
                 let sight = &self.sights[*number];
                 let target = &job.stage.targets[sight.target];
@@ -244,15 +246,15 @@ impl Tile {
                 let face = target.tree.leaves[sight.leaf as usize].face;
                 let far = if approach.ends { 1.0 } else { f64::INFINITY };
                 let (event, back) = (point.event(), approach.back);
-                self.ways.push((*number, Way { from: sight.target, face, event, back, far }));
+                self.ways.push(Way { from: sight.target, face, event, back, far });
+                self.from.push(*number);
             }
             self.count.shadow += self.ways.len() as u64;
-            for ways in self.ways.chunks(PACKET) {
-                self.eight.clear();
-                self.eight.extend(ways.iter().map(|(_, way)| *way));
-                let blocked = job.stage.blocked(&self.eight, &mut self.packet, job.vectors);
+            let numbers = self.from.chunks(PACKET);
+            for (ways, numbers) in self.ways.chunks(PACKET).zip(numbers) {
+                let blocked = job.stage.blocked(ways, &mut self.packet, job.vectors);
                 self.count.blocked += u64::from(blocked.count_ones());
-                for (i, (number, _)) in ways.iter().enumerate() {
+                for (i, number) in numbers.iter().enumerate() {
                     self.lit[light] &= !(u64::from(blocked >> i & 1) << number);
                 }
             }
