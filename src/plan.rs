@@ -7,10 +7,10 @@ use crate::scene::Scene;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
     /// Bodies are moved to where they are seen, cut, and drawn as polygons (Nollert et al. 2000, section 2): fast. There
-    /// are no shadows.
+    /// are no shadows, and no sky.
     #[default]
     Apparent,
-    /// Rays are followed back in time ([`crate::trace`]): with shadows.
+    /// Rays are followed back in time ([`crate::trace`]): with shadows, before the sky, in curved spacetime too.
     Trace,
 }
 
@@ -25,8 +25,12 @@ impl std::fmt::Display for Method {
 
 /// The cheapest method that is right for a scene, and why.
 pub fn cheapest(scene: &Scene) -> (Method, &'static str) {
-    if has_shadows(scene) {
+    if scene.spacetime.is_curved() {
+        (Method::Trace, "spacetime is curved")
+    } else if has_shadows(scene) {
         (Method::Trace, "lights cast shadows")
+    } else if scene.sky.is_some() {
+        (Method::Trace, "there is a sky")
     } else {
         (Method::Apparent, "nothing casts shadows")
     }

@@ -142,9 +142,9 @@ impl DevelopFlags {
 enum MethodFlag {
     /// The cheapest that is right for the scene
     Auto,
-    /// Polygons, moved to where they are seen: without shadows
+    /// Polygons, moved to where they are seen: without shadows, in flat spacetime
     Apparent,
-    /// Rays, followed back in time: with shadows
+    /// Rays, followed back in time: with shadows, before the sky, past black holes
     Trace,
 }
 
@@ -230,6 +230,13 @@ impl LookFlags {
                 (method, Some(why))
             }
         };
+        if scene.spacetime.is_curved() && method == Method::Apparent {
+            let flag = of_polygons.unwrap_or("--method apparent");
+            let why =
+                "is for flat spacetime; in curved spacetime only rays show what is seen, so leave it out";
+            return Err(format!("{flag} {why}").into());
+        }
+        scene.check_spacetime()?;
         options.method = method;
         Ok(why)
     }

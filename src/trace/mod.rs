@@ -5,9 +5,14 @@
 //! and D = 1/|K′ᵗ|. From what is met, the null vectors to the lights are followed in the same way, so that shadows are
 //! where light *was* in the way of.
 //!
+//! Through curved spacetime each ray is a chain of chords, and the same holds of each of them: see
+//! [`Tracer::trace_curved`].
+//!
 //! It finds the point of the surface otherwise than [`raster`](crate::raster) does, and knows shadows; all else is the same.
 
 mod beam;
+mod chord;
+mod curved;
 mod lanes;
 mod origin;
 mod packet;
@@ -18,10 +23,13 @@ mod tree;
 
 use crate::film::Film;
 use crate::light::SeenShading;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Eye, Lens, Scene};
+use chord::Goal;
 use rayon::prelude::*;
 use stage::Stage;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use terrell_geodesic::{Spacetime, Wide};
 use tile::{Job, SIDE, Tile};
 use tree::Tree;
 
@@ -72,7 +80,9 @@ impl Tracer {
     ) -> Count {
         film.clear(camera.lens.width(), camera.lens.height());
         let stage = self.stage(scene, camera, shading);
-        let job = Job { stage: &stage, lens: &camera.lens, shading, samples, vectors: self.vectors };
+        let world_from_observer = || camera.observer.observer_from_world::<Wide>().inverse().rounded();
+        let sky = scene.sky.as_ref().map(|sky| (sky, world_from_observer()));
+        let job = Job { stage: &stage, lens: &camera.lens, shading, sky, samples, vectors: self.vectors };
         film.bands(SIDE)
             .enumerate()
             .map_init(Tile::default, |tile, (index, rows)| tile.draw_band(&job, index as u32 * SIDE, rows))
@@ -88,10 +98,49 @@ impl Tracer {
         shading: &SeenShading<'_>,
     ) -> Count {
         let stage = self.stage(scene, camera, shading);
-        let job = Job { stage: &stage, lens: &camera.lens, shading, samples, vectors: self.vectors };
+        let job =
+            Job { stage: &stage, lens: &camera.lens, shading, sky: None, samples, vectors: self.vectors };
         (0..camera.lens.height().div_ceil(SIDE))
             .into_par_iter()
             .map_init(Tile::default, |tile, band| tile.cast_band(&job, band * SIDE))
+            .reduce(Count::default, Count::add)
+    }
+
+    /// Traces what is seen in curved spacetime, whatever its metric, onto a film, which is cleared first; `done` is told how
+    /// many rows are finished, by whatever thread.
+    ///
+    /// A body is a rigid mesh in the spacetime's coordinates, moving uniformly in them, X = L(celerity)·X′ + origin as in
+    /// flat spacetime. A ray's chords are met with its boxes, inflated by how far the ray may be from them; whether and
+    /// where it goes through a triangle is then decided on the ray itself. D is the quotient of the products of wave vector
+    /// and four-velocity at both ends, in the metric there. Lights are left out.
+    #[expect(clippy::too_many_arguments, reason = "as many as things meet in a picture")]
+    pub fn trace_curved<S: Spacetime>(
+        &self,
+        scene: &Scene,
+        space: &S,
+        eye: &Eye,
+        lens: &Lens,
+        samples: &[[f64; 2]],
+        shading: &SeenShading<'_>,
+        film: &mut Film,
+        done: impl Fn(u32) + Sync,
+    ) -> Count {
+        film.clear(lens.width(), lens.height());
+        let goals = scene.bodies.iter().enumerate().zip(&self.trees).map(|((index, body), tree)| {
+            let tree = tree.clone().unwrap_or_else(|| Arc::new(Tree::new(&body.mesh)));
+            Goal::new(index, &body.motion, body.mesh.clone(), tree, space.sagitta(), space.lag())
+        });
+        let goals: Vec<Goal> = goals.collect();
+        let job = curved::Job { space, goals: &goals, eye, lens, sky: scene.sky.as_ref(), shading, samples };
+        let finished = AtomicU32::new(0);
+        film.bands(SIDE)
+            .enumerate()
+            .map_init(curved::Band::default, |band, (index, mut rows)| {
+                let count = band.draw(&job, index as u32 * SIDE, &mut rows);
+                let rows = (rows.body.len() / lens.width() as usize) as u32;
+                done(finished.fetch_add(rows, Ordering::Relaxed) + rows);
+                count
+            })
             .reduce(Count::default, Count::add)
     }
 
