@@ -10,8 +10,8 @@ const COUNT: usize = 24_000;
 /// stars in large pictures, too.
 const RADIUS: f64 = 1.5e-3;
 
-/// Wider footprints than this, radians, see the mean.
-const WIDEST: f64 = 0.03;
+/// Footprints wider than this, radians, see less and less of single stars, and more of their mean.
+const WIDEST: f64 = 0.02;
 
 /// The greatest flux, of the least.
 const BRIGHTEST: f64 = 400.0;
@@ -38,7 +38,7 @@ static SKY: LazyLock<Sky> = LazyLock::new(Sky::new);
 
 /// Colours of stars of 3000, 4500, 6000, 9000 and 20 000 K, of luminance 1 or so.
 const COLORS: [[f64; 3]; 5] =
-    [[1.9, 0.85, 0.3], [1.4, 0.92, 0.6], [1.1, 0.97, 0.95], [0.85, 1.0, 1.35], [0.7, 1.0, 1.75]];
+    [[1.6, 0.88, 0.5], [1.3, 0.94, 0.7], [1.1, 0.97, 0.95], [0.9, 1.0, 1.25], [0.75, 1.0, 1.5]];
 
 /// The next of evenly spread numbers from 0 to 1 (SplitMix64).
 fn next(state: &mut u64) -> f64 {
@@ -88,9 +88,11 @@ pub(super) fn radiance(direction: DVec3, steps: [DVec3; 2]) -> [f32; 3] {
     let e2 = direction.cross(e1);
     let [p, q] = steps.map(|s| [s.dot(e1), s.dot(e2)]);
     let widest = p[0].hypot(p[1]).max(q[0].hypot(q[1]));
-    if widest.is_nan() || widest > WIDEST {
+    let blur = (0.5 * (widest / WIDEST - 1.0)).max(0.0);
+    if widest.is_nan() || blur >= 1.0 {
         return sky.mean;
     }
+    let [p, q] = [p, q].map(|v| v.map(|c| c / (1.0 + 2.0 * blur)));
     // Half a pixel is about two standard deviations of a box.
     const BOX: f64 = 0.25;
     let own = RADIUS * RADIUS;
@@ -98,14 +100,14 @@ pub(super) fn radiance(direction: DVec3, steps: [DVec3; 2]) -> [f32; 3] {
     let yy = own + BOX * (p[1] * p[1] + q[1] * q[1]);
     let xy = BOX * (p[0] * p[1] + q[0] * q[1]);
     let det = xx * yy - xy * xy;
-    let reach = 4.0 * (xx + yy).sqrt();
+    let reach = 3.5 * (xx + yy).sqrt();
     let (declination, around) = (direction.z.clamp(-1.0, 1.0).asin(), direction.y.atan2(direction.x));
     let mut sum = [0.0; 3];
     let mut add = |star: &Star| {
         let off = star.direction - direction;
         let (x, y) = (off.dot(e1), off.dot(e2));
         let square = (yy * x * x - 2.0 * xy * x * y + xx * y * y) / det;
-        if square < 16.0 && star.direction.dot(direction) > 0.0 {
+        if square < 12.25 && star.direction.dot(direction) > 0.0 {
             let weight = (-0.5 * square).exp() * own / (std::f64::consts::TAU * det.sqrt());
             sum = [0, 1, 2].map(|i| sum[i] + weight * star.flux[i]);
         }
@@ -126,7 +128,8 @@ pub(super) fn radiance(direction: DVec3, steps: [DVec3; 2]) -> [f32; 3] {
         range(around - width + std::f64::consts::TAU, around + width + std::f64::consts::TAU);
         range(around - width - std::f64::consts::TAU, around + width - std::f64::consts::TAU);
     }
-    sum.map(|v| v as f32)
+    let blur = blur as f32;
+    [0, 1, 2].map(|i| sum[i] as f32 * (1.0 - blur) + sky.mean[i] * blur)
 }
 
 #[cfg(test)]
