@@ -26,6 +26,8 @@ impl KerrSky {
     }
 
     /// The end of every ray, from its event and its wave vector, which points back along the light.
+    ///
+    /// A wave vector that is not null to 10⁻⁶ ends as [`End::Drift`], as does one that leaves to the future.
     pub fn trace(&self, rays: &[(Event<World>, FourVector<World>)]) -> Vec<End> {
         let mut ends = vec![End::StepLimit; rays.len()];
         #[cfg(target_arch = "x86_64")]

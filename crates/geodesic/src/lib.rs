@@ -19,10 +19,49 @@
 //! let _ = world_from_rest * seen.coordinates(); // an observer's event is not a rest-frame event
 //! ```
 //!
+//! # Curved spacetime
+//!
+//! G = c = 1. Any spacetime is described by one of
+//!
+//! * its metric g alone, written once over any [`Number`] ([`Metric`], [`Curved::metric`]);
+//! * the second derivative ẍ(x, ẋ) alone ([`Curved::second_derivative`]);
+//! * a law of motion written out by hand ([`Law`]), as [`KerrSchild`] is for black holes.
+//!
+//! ```
+//! use glam::DVec3;
+//! use terrell_geodesic::{Curved, End, Event, LocalFrame, Ray, Spacetime, static_observer};
+//!
+//! let hole = Curved::kerr(1.0, 0.9)?;
+//! let event = Event::new(0.0, 20.0, 0.0, 0.0);
+//! let observer = static_observer(&hole, event)?;
+//! let frame = LocalFrame::new(&hole, event, observer, -DVec3::X, DVec3::Z)?;
+//! let mut ray = hole.ray(event, frame.seen_from(DVec3::new(0.4, 0.0, 0.9165).normalize()));
+//! for segment in ray.by_ref() {
+//!     // straight to 0.01 M; what it meets is found to the tolerance by `ray.at(s)`
+//!     assert!(segment.length > 0.0);
+//! }
+//! assert!(matches!(ray.end(), Some(End::Sky { .. })));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | equation | where |
+//! |---|---|
+//! | ẍ^μ = −Γ^μ_αβ ẋ^α ẋ^β (Nollert et al. 2000, Eq. 6) | [`BySecondDerivative`]; as Hamilton's equations [`ByMetric`] |
+//! | f(v + dε) = f(v) + f′(v) dε | [`Dual`] |
+//! | g = η + f l l | [`KerrSchild`] |
+//! | y′ = f(y), orders 8 and 5 | [`Method`] |
+//! | sagitta ≈ h²\|x″\|/8, kept below ε | [`LightRay`], [`Accuracy`] |
+//! | k = −u + n in an observer's frame | [`LocalFrame`] |
+//! | L = −α sin ι, Q = β² + (α² − a²) cos² ι (section 3.3) | [`DistantCamera`] |
+//! | w″ = ½W′(w), N″ = −(L² + Q + 2a²N_z²)N + a²N_z ẑ | [`KerrSky`] |
+//!
 //! # Reading order
 //!
 //! [`Real`] (the numbers) → [`Wide`] (twice the digits) → [`Event`], [`FourVector`] → [`Celerity`] →
-//! [`Lorentz`] → [`Tetrad`] → [`Spacetime`], [`Flat`].
+//! [`Lorentz`] → [`Tetrad`] → [`Spacetime`], [`Segment`], [`Ray`], [`End`] → [`Flat`].
+//!
+//! Then what is curved: [`Number`], [`Dual`] → [`Metric`] → [`Law`] → [`Method`] → [`LightRay`] → [`Curved`] →
+//! [`LocalFrame`]. Then black holes: [`KerrSchild`], [`BoyerLindquist`], [`DistantCamera`], [`KerrSky`].
 
 mod boyer_lindquist;
 mod celerity;

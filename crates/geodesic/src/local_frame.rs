@@ -66,7 +66,12 @@ impl LocalFrame {
         if norm.is_nan() || (norm + 1.0).abs() > 1e-6 {
             return Err(FrameError::NotNormalised(norm));
         }
-        let time = four_velocity * (1.0 / (-norm).sqrt());
+        // For who is fast in these coordinates the norm itself is a difference of large terms: where it tells
+        // nothing but their rounding, the four-velocity is better as it is.
+        let size = four_velocity.t * four_velocity.t + four_velocity.xyz().length_squared();
+        let rounding = 16.0 * f64::EPSILON * size;
+        let scale = if (norm + 1.0).abs() <= rounding { 1.0 } else { 1.0 / (-norm).sqrt() };
+        let time = four_velocity * scale;
         let forward = hint(forward).ok_or(FrameError::NoForward)?;
         let up = hint(up).ok_or(FrameError::NoUp)?;
         let right = forward.cross(up);

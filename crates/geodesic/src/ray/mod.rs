@@ -1,6 +1,8 @@
+mod chords;
+
 use crate::law::split;
-use crate::runge_kutta::Dense;
 use crate::{Accuracy, End, Event, FourVector, Law, Monitor, Ray, Segment, Stop, World};
+use chords::Step;
 use std::collections::VecDeque;
 
 /// A ray of a [`Curved`](crate::Curved) spacetime: integrated step by step, handed out chord by chord.
@@ -15,6 +17,7 @@ pub struct LightRay<'a, L> {
     h: f64,
     /// Error and length of the last accepted step.
     before: Option<(f64, f64)>,
+    outward: Option<Outward>,
     off_cone: f64,
     /// Why the integration ended.
     integrated: Option<End>,
@@ -22,45 +25,19 @@ pub struct LightRay<'a, L> {
     /// Where the next chord begins: affine parameter and event.
     from: f64,
     start: [f64; 4],
+    /// Length of the last chord.
+    length: f64,
     /// The last segment's direction where it runs to infinity.
     infinite: Option<Segment>,
     finished: bool,
     monitor: Monitor,
 }
 
-/// An accepted step, to be evaluated anywhere within.
-struct Step {
-    from: f64,
-    length: f64,
-    dense: Dense<8>,
-    /// The length of the step as it was taken, before it was cut where the ray stopped.
-    whole: f64,
-    /// Events at the quarters of the step, its end the last.
-    samples: [[f64; 4]; SAMPLES],
-}
-
-const SAMPLES: usize = 4;
-
-impl Step {
-    fn new(from: f64, length: f64, dense: Dense<8>, whole: f64) -> Self {
-        let mut step = Self { from, length, dense, whole, samples: [[0.0; 4]; SAMPLES] };
-        step.samples = std::array::from_fn(|part| step.event_at(from + length * Self::fraction(part)));
-        step
-    }
-
-    fn fraction(part: usize) -> f64 {
-        (part + 1) as f64 / SAMPLES as f64
-    }
-
-    fn to(&self) -> f64 {
-        self.from + self.length
-    }
-
-    #[inline(always)]
-    fn event_at(&self, s: f64) -> [f64; 4] {
-        let x = (s - self.from) / self.whole;
-        std::array::from_fn(|i| self.dense.component(i, x))
-    }
+/// What was before the last step, to foretell what is to come on the way out.
+struct Outward {
+    r: f64,
+    wave: [f64; 4],
+    change: [f64; 4],
 }
 
 impl<'a, L: Law> LightRay<'a, L> {
@@ -80,11 +57,13 @@ impl<'a, L: Law> LightRay<'a, L> {
             slope: [f64::NAN; 8],
             h: 0.0,
             before: None,
+            outward: None,
             off_cone: 0.0,
             integrated: None,
             steps: VecDeque::new(),
             from: 0.0,
             start,
+            length: 0.0,
             infinite: None,
             finished: false,
             monitor: Monitor::default(),
@@ -181,6 +160,11 @@ impl<'a, L: Law> LightRay<'a, L> {
             }
             self.h *= if grow { factor } else { factor.min(1.0) };
             self.before = Some((error.max(1e-6), taken));
+            self.outward = Some(Outward {
+                r: length(&self.state[1..4]),
+                wave: split(&self.state).1,
+                change: split(&self.slope).1,
+            });
             self.state = trial.end;
             self.slope = slope;
             self.shorten();
@@ -241,9 +225,9 @@ impl<'a, L: Law> LightRay<'a, L> {
 
     /// The wave vector at infinity, once what is not known of it is below the tolerance.
     ///
-    /// Where g − η falls like M/r, the derivative ḱ of the wave vector falls like 1/r² along it and like 1/r³
-    /// across it: what is left of its change is ḱ r/|k| and half of that. The error of this is of relative order
-    /// b/r and M/r, b the distance at which the straight ray passes the origin.
+    /// Where g − η falls like M/r, the change of the wave vector falls like A/r² + B/r³; the changes at the last
+    /// two steps' ends tell A and B, and what is left, A/r + B/2r², is added. How well that would have foretold the
+    /// last step tells its error.
     fn escaped(&self) -> Option<FourVector<World>> {
         let place = &self.state[1..4];
         let k = &self.state[5..8];
@@ -251,29 +235,35 @@ impl<'a, L: Law> LightRay<'a, L> {
         if r < self.law.escape_radius() {
             return None;
         }
+        let before = self.outward.as_ref()?;
         let size = length(k);
         let outward = (0..3).map(|i| place[i] * k[i]).sum::<f64>() / (r * size);
-        if outward.is_nan() || outward < 0.9 {
+        if outward.is_nan() || outward < 0.9 || r < 1.2 * before.r {
             return None;
         }
-        let reach = r / size;
-        let change = &self.slope[5..8];
-        let along = (0..3).map(|i| change[i] * k[i]).sum::<f64>() / (size * size);
-        let across: [f64; 3] = std::array::from_fn(|i| change[i] - along * k[i]);
-        let aside = (1.0 - outward * outward).max(0.0).sqrt();
-        let bend = 0.5 * length(&across) * reach / size;
-        let stretch = along.abs() * reach;
-        let time = self.slope[4] * reach;
-        let unknown = bend * (aside + stretch + bend) + (time / size).abs() * (stretch + bend);
-        if unknown > 0.1 * self.accuracy.tolerance {
+        let (now, then) = (size / r, size / before.r);
+        let mut left = [0.0; 4];
+        let mut unknown = 0.0;
+        for (i, left) in left.iter_mut().enumerate() {
+            let (f, g) = (self.slope[4 + i] / (now * now), before.change[i] / (then * then));
+            let b = (g - f) / (then - now);
+            let a = f - b * now;
+            let to_infinity = |from: f64| from * (a + 0.5 * b * from);
+            *left = to_infinity(now);
+            let foretold = to_infinity(then) - *left;
+            unknown += (self.state[4 + i] - before.wave[i] - foretold).powi(2);
+        }
+        // The next term falls like 1/r³ at least, and here is taken to fall by half as much as it could.
+        let unknown = unknown.sqrt() / size * (before.r / r).powi(2);
+        if unknown.is_nan() || unknown > 0.3 * self.accuracy.tolerance {
             return None;
         }
-        let n: [f64; 3] = std::array::from_fn(|i| k[i] + 0.5 * across[i] * reach);
+        let n = [0, 1, 2].map(|i| k[i] + left[1 + i]);
         let norm = length(&n);
-        let before = self.law.wave_vector(&self.state)[0];
-        let frequency = (self.state[4] + time).abs();
+        let sign = self.law.wave_vector(&self.state)[0];
+        let frequency = (self.state[4] + left[0]).abs();
         let [x, y, z] = n.map(|c| c / norm * frequency);
-        Some(FourVector::new(frequency.copysign(before), x, y, z))
+        Some(FourVector::new(frequency.copysign(sign), x, y, z))
     }
 
     /// Follows the ray to its end without laying segments along it; cheaper where nothing is in the way.
@@ -285,118 +275,6 @@ impl<'a, L: Law> LightRay<'a, L> {
             }
             self.advance(false);
         }
-    }
-
-    /// The state at an affine parameter, continued from the nearest step known.
-    fn state_at(&self, s: f64) -> Option<[f64; 8]> {
-        let step = self.steps.iter().find(|step| s <= step.to()).or(self.steps.back())?;
-        Some(step.dense.at((s - step.from) / step.whole))
-    }
-
-    /// How far the ray is from the chord from `start` to the end of a stretch of step `last`, as a fraction of what
-    /// is allowed.
-    ///
-    /// Every step's own stretch of the chord is looked at: steps are short where the ray bends.
-    fn sagitta(&self, last: usize, to: f64, end: &[f64; 4]) -> f64 {
-        let length = to - self.from;
-        let chord: [f64; 4] = std::array::from_fn(|i| (end[i] - self.start[i]) / length);
-        let across = 1.0 / dot3(&chord, &chord);
-        let allowed = [self.accuracy.sagitta, self.accuracy.lag].map(|most| 1.0 / (most * most));
-        let mut worst = 0.0f64;
-        let mut look = |s: f64, at: &[f64; 4]| {
-            let off: [f64; 4] = std::array::from_fn(|i| at[i] - self.start[i] - chord[i] * (s - self.from));
-            let along = dot3(&off, &chord);
-            let aside = (dot3(&off, &off) - along * along * across).max(0.0);
-            // Also keeps a NaN, which `max` would drop.
-            let square = (aside * allowed[0]).max(off[0] * off[0] * allowed[1]);
-            worst = if square <= worst { worst } else { square };
-        };
-        for (index, step) in self.steps.iter().enumerate().take(last + 1) {
-            let whole = step.from >= self.from && index < last;
-            if whole {
-                for (part, at) in step.samples.iter().enumerate() {
-                    look(step.from + step.length * Step::fraction(part), at);
-                }
-            } else {
-                let (first, to) = (step.from.max(self.from), step.to().min(to));
-                // Where the chord is within one step it is smooth and its own middle tells most.
-                const PARTS: u32 = 5;
-                for part in 1..PARTS {
-                    let s = first + (to - first) * (f64::from(part) / f64::from(PARTS));
-                    look(s, &step.event_at(s));
-                }
-                if index < last {
-                    look(step.to(), &step.samples[SAMPLES - 1]);
-                }
-            }
-        }
-        worst.sqrt()
-    }
-
-    /// The longest chord from where the last one ended that is within the sagitta.
-    fn chord(&mut self) -> Option<Segment> {
-        // What a chord's samples may miss of its greatest sagitta.
-        const AIM: f64 = 0.95;
-        while self.steps.front().is_some_and(|step| step.to() <= self.from) {
-            self.steps.pop_front();
-        }
-        // Step by step as long as the chord may run to the step's end.
-        let mut fits: Option<(f64, [f64; 4])> = None;
-        let mut last = 0;
-        let (mut too_long, mut sagitta) = loop {
-            if last == self.steps.len() {
-                if self.integrated.is_none() {
-                    self.advance(true);
-                }
-                if last == self.steps.len() {
-                    return fits.map(|fit| self.cut(fit));
-                }
-            }
-            let step = &self.steps[last];
-            let (to, end) = (step.to(), step.samples[SAMPLES - 1]);
-            let sagitta = self.sagitta(last, to, &end);
-            if sagitta.is_nan() {
-                return None;
-            }
-            if sagitta > AIM {
-                break (to - self.from, sagitta);
-            }
-            fits = Some((to - self.from, end));
-            last += 1;
-        };
-        // Then within the step.
-        let step_starts = (self.steps[last].from - self.from).max(0.0);
-        let mut length = too_long * (AIM / sagitta).sqrt();
-        for _ in 0..30 {
-            let known = fits.map_or(0.0, |fit| fit.0).max(step_starts);
-            if !(length > known && length < too_long) {
-                length = 0.5 * (known + too_long);
-            }
-            let end = self.steps[last].event_at(self.from + length);
-            sagitta = self.sagitta(last, self.from + length, &end);
-            if sagitta <= AIM {
-                fits = Some((length, end));
-                if sagitta > 0.88 * AIM {
-                    break;
-                }
-            } else {
-                too_long = length;
-            }
-            if too_long - fits.map_or(0.0, |fit| fit.0) < 0.01 * too_long && fits.is_some() {
-                break;
-            }
-            length *= (0.96 * AIM / sagitta).sqrt();
-        }
-        fits.map(|fit| self.cut(fit))
-    }
-
-    fn cut(&mut self, (length, end): (f64, [f64; 4])) -> Segment {
-        let direction: [f64; 4] = std::array::from_fn(|i| (end[i] - self.start[i]) / length);
-        let segment =
-            Segment { start: self.start.into(), direction: direction.into(), from: self.from, length };
-        self.from += length;
-        self.start = end;
-        segment
     }
 }
 
@@ -414,6 +292,8 @@ impl<L: Law> Iterator for LightRay<'_, L> {
             return Some(segment);
         }
         self.finished = true;
+        // No chord where there is a ray: it could not be measured.
+        self.integrated.get_or_insert(End::NotANumber);
         let Some(End::Sky { wave_vector }) = self.integrated else { return None };
         let segment = Segment {
             start: self.start.into(),
@@ -457,10 +337,4 @@ impl From<Stop> for End {
 #[inline(always)]
 fn length(v: &[f64]) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
-}
-
-/// The product of the space parts.
-#[inline(always)]
-fn dot3(a: &[f64; 4], b: &[f64; 4]) -> f64 {
-    a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
