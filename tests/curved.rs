@@ -30,19 +30,20 @@ const AWAY: &str = "[[body]]\nname = \"away\"\nmesh = \"cube\"\nscale = 0.001\np
 fn shadow_is_a_disc_of(half_angle: f64, camera: &str) {
     let size = 241;
     let text = format!(
-        "[spacetime]\nmetric = \"schwarzschild\"\n[camera]\n{camera}look_at = [0, 0, 0]\nprojection = \"fisheye\"\nfov_deg = 240\nsize = [{size}, {size}]\n[sky]\ntexture = \"checker\"\n{AWAY}"
+        "[spacetime]\nmetric = \"schwarzschild\"\n[camera]\n{camera}look_at = [0, 0, 0]\nprojection = \"fisheye\"\nfov_deg = {}\nsize = [{size}, 3]\n[sky]\ntexture = \"checker\"\n{AWAY}",
+        240.0 * 3.0 / f64::from(size)
     );
     let scene = scene(&text);
     let (film, report) = traced(&scene);
     assert_eq!(report.rays.unwrap().failed(), 0);
     let lens = scene.camera().unwrap().lens;
     for x in 0..size {
-        let direction = lens.direction(DVec2::new(x as f64 + 0.5, 0.5 * size as f64)).unwrap();
+        let direction = lens.direction(DVec2::new(f64::from(x) + 0.5, 1.5)).unwrap();
         let angle = direction.normalize().dot(DVec3::Z).acos();
         // Rays are right to 1e-8, which is more by what they wind around the photon sphere.
         if (angle - half_angle).abs() > 1e-6 {
             let expected = if angle < half_angle { HOLE } else { NOTHING };
-            assert_eq!(film.body[(size / 2 * size + x) as usize], expected, "{camera}{angle} {half_angle}");
+            assert_eq!(film.body[(size + x) as usize], expected, "{camera}{angle} {half_angle}");
         }
     }
 }
@@ -71,7 +72,7 @@ fn from_infinity_the_shadow_of_a_rotating_hole_is_as_wide_as_known() {
     let range = [-impact(orbit(1.0)), -impact(orbit(-1.0))];
     for azimuth_deg in [0, 70] {
         let text = format!(
-            "[spacetime]\nmetric = \"kerr\"\nmass = 2\nspin = 0.9\n[camera]\nat_infinity = {{ inclination_deg = 90, azimuth_deg = {azimuth_deg}, height = 2 }}\nsize = [1201, 51]\n{AWAY}"
+            "[spacetime]\nmetric = \"kerr\"\nmass = 2\nspin = 0.9\n[camera]\nat_infinity = {{ inclination_deg = 90, azimuth_deg = {azimuth_deg}, height = 0.11764705882352941 }}\nsize = [1201, 3]\n{AWAY}"
         );
         let (film, report) = traced(&scene(&text));
         assert_eq!(report.rays.unwrap().failed(), 0);
@@ -79,7 +80,7 @@ fn from_infinity_the_shadow_of_a_rotating_hole_is_as_wide_as_known() {
             let alpha = (f64::from(x) - 600.0) * (2.0 / 51.0) / 2.0;
             if range.iter().all(|end| (alpha - end).abs() > 1e-6) {
                 let expected = if range[0] < alpha && alpha < range[1] { HOLE } else { NOTHING };
-                assert_eq!(film.body[25 * 1201 + x as usize], expected, "{alpha} {range:?}");
+                assert_eq!(film.body[1201 + x as usize], expected, "{alpha} {range:?}");
             }
         }
     }
