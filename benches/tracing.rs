@@ -12,7 +12,7 @@ use terrell::light::Shading;
 use terrell::relativity::Motion;
 use terrell::scene::{Body, Camera, Lens, Light, LightKind, Mesh, Projection, Scene, View, shapes};
 use terrell::spectrum::Spectrum;
-use terrell::trace::Tracer;
+use terrell::trace::{Look, Paths, Tracer};
 
 const REPEATS: usize = 7;
 
@@ -103,8 +103,9 @@ fn main() {
                 shadow[i] = count / (both - seconds) * 1e-6;
             }
             let mut film = Film::new(0, 0);
+            let look = Look { samples: samples.offsets(), shading: &luminous, paths: Paths::default() };
             let picture = median_seconds(|| {
-                tracer.trace(&scene, &camera, samples.offsets(), &luminous, &mut film);
+                tracer.trace(&scene, &camera, &look, &mut film, |_, _| ());
             });
             println!(
                 "{label:>10} {build:>10.0} | {:>9.1} {:>9.1} {:>7.0}% | {:>9.1} {:>9.1} | {:>10.1}",

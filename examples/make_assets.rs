@@ -31,10 +31,15 @@ fn obj(name: &str, mesh: &Mesh) -> (String, String) {
         }
         obj.push('\n');
     }
+    for normal in &mesh.normals {
+        let [x, y, z] = normal.map(|c| round(f64::from(c), 1e6));
+        writeln!(obj, "vn {x} {y} {z}").unwrap();
+    }
+    let corner = |v: u32| if mesh.normals.is_empty() { format!("{v}") } else { format!("{v}//{v}") };
     let mut materials = BTreeMap::new();
     let mut last = usize::MAX;
     for (t, corners) in mesh.triangles.iter().enumerate() {
-        let [a, b, c] = corners.map(|v| v + 1);
+        let [a, b, c] = corners.map(|v| corner(v + 1));
         if !mesh.paint.is_of_faces() {
             writeln!(obj, "f {a} {b} {c}").unwrap();
             continue;

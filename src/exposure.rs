@@ -65,9 +65,9 @@ impl Exposure {
             Self::Rest => Coloring::Geometry,
             Self::Auto => options.coloring,
         };
-        // Outlines matter less than the time.
-        let options =
-            Options { coloring, samples: 1, tolerance: options.tolerance.max(1.0), ..options.clone() };
+        // Outlines matter less than the time; paths need a few to be near the truth.
+        let samples = if options.paths.bounces > 0 { 8 } else { 1 };
+        let options = Options { coloring, samples, tolerance: options.tolerance.max(1.0), ..options.clone() };
         let count = cameras.len().min(METERED);
         let place = |i: usize| if count > 1 { i * (cameras.len() - 1) / (count - 1) } else { 0 };
         let prepared = options.prepare(scene, cameras)?;

@@ -46,7 +46,8 @@
 //!
 //! [`geodesic`] (events, Lorentz maps, observers) → [`relativity`] (the map) → [`scene`] (what is there) →
 //! [`apparent`] (what it looks like), [`spectrum`] and [`light`] (what it shines with) → [`raster`] → [`film`] →
-//! [`exposure`], [`tone`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in turn. [`mod@transform`] instead makes a [`export::Model`] for other programs of what there is and how it looks.
+//! [`exposure`], [`tone`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in turn. [`measure`] says how far two
+//! films are apart. [`mod@transform`] instead makes a [`export::Model`] for other programs of what there is and how it looks.
 
 pub mod apparent;
 pub mod color;
@@ -55,6 +56,7 @@ pub mod export;
 pub mod exposure;
 pub mod film;
 pub mod light;
+pub mod measure;
 pub mod picture;
 pub mod plan;
 pub mod raster;

@@ -8,7 +8,7 @@ use crate::plan::Method;
 use crate::raster::{Drawable, TooManyToPaint, paint, shade_again};
 use crate::relativity::ApparentMap;
 use crate::scene::{Camera, EyeError, Mesh, Scene, Spacetime, SpacetimeError};
-use crate::trace::{Count, Tracer};
+use crate::trace::{Look, Paths, Traced, Tracer};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use terrell_geodesic::{Accuracy, Curved, KerrSchild};
@@ -29,8 +29,10 @@ pub struct Options {
     pub coloring: Coloring,
     /// Where the Doppler factor is worked out.
     pub doppler_at: DopplerAt,
-    /// What decides which triangle a pixel sees.
+    /// What decides which triangle a pixel sees, where nothing is traced.
     pub raster: Raster,
+    /// How light of surfaces on each other is followed, where rays are traced.
+    pub paths: Paths,
 }
 
 /// What decides which triangle a pixel sees; all else is the same.
@@ -77,6 +79,7 @@ impl Default for Options {
             coloring: Coloring::default(),
             doppler_at: DopplerAt::default(),
             raster: Raster::Cpu,
+            paths: Paths::default(),
         }
     }
 }
@@ -123,7 +126,7 @@ pub struct Report {
     /// Time for drawing.
     pub shading: Duration,
     /// Rays, where they were traced.
-    pub rays: Option<Count>,
+    pub rays: Option<Traced>,
 }
 
 /// A step of [`render`], for showing progress.
@@ -139,6 +142,13 @@ pub enum Step {
         done: u32,
         /// All rows.
         of: u32,
+    },
+    /// Rays are traced, for so many samples of a pixel so far.
+    Tracing {
+        /// How many are done.
+        done: usize,
+        /// How many there are.
+        of: usize,
     },
 }
 
@@ -186,16 +196,16 @@ pub fn render_again(
     let triangles = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
     if let Some(tracer) = &prepared.tracer {
         let start = Instant::now();
-        step(Step::Drawing);
+        let look = Look { samples: samples.offsets(), shading, paths: options.paths };
         let rays = if let (Spacetime::Kerr(hole), Some(eye)) = (&scene.spacetime, scene.eye(camera)?) {
             let space = around(*hole);
             let step = Mutex::new(step);
             let of = camera.lens.height();
             // A panic of another thread is told by that thread.
             let done = |done| step.lock().unwrap_or_else(PoisonError::into_inner)(Step::Rows { done, of });
-            tracer.trace_curved(scene, &space, &eye, &camera.lens, samples.offsets(), shading, film, done)
+            tracer.trace_curved(scene, &space, &eye, &camera.lens, &look, film, done)
         } else {
-            tracer.trace(scene, camera, samples.offsets(), shading, film)
+            tracer.trace(scene, camera, &look, film, |done, of| step(Step::Tracing { done, of }))
         };
         let (pieces, subdivision) = (triangles, Duration::ZERO);
         return Ok(Report { triangles, pieces, subdivision, shading: start.elapsed(), rays: Some(rays) });

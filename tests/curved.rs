@@ -12,7 +12,7 @@ use terrell::geodesic::{Accuracy, Curved, KerrSchild, Ray, Spacetime as _};
 use terrell::plan::{Method, cheapest};
 use terrell::render::{Options, Report, render};
 use terrell::scene::{Scene, Spacetime, parse_scene, shapes};
-use terrell::trace::Tracer;
+use terrell::trace::{Look, Paths, Tracer};
 
 fn scene(text: &str) -> Scene {
     parse_scene(text, Path::new("s.toml")).unwrap_or_else(|e| panic!("{e}\n{text}"))
@@ -35,7 +35,7 @@ fn shadow_is_a_disc_of(half_angle: f64, camera: &str) {
     );
     let scene = scene(&text);
     let (film, report) = traced(&scene);
-    assert_eq!(report.rays.unwrap().failed(), 0);
+    assert_eq!(report.rays.unwrap().count.failed(), 0);
     let lens = scene.camera().unwrap().lens;
     for x in 0..size {
         let direction = lens.direction(DVec2::new(f64::from(x) + 0.5, 1.5)).unwrap();
@@ -75,7 +75,7 @@ fn from_infinity_the_shadow_of_a_rotating_hole_is_as_wide_as_known() {
             "[spacetime]\nmetric = \"kerr\"\nmass = 2\nspin = 0.9\n[camera]\nat_infinity = {{ inclination_deg = 90, azimuth_deg = {azimuth_deg}, height = 0.11764705882352941 }}\nsize = [1201, 3]\n{AWAY}"
         );
         let (film, report) = traced(&scene(&text));
-        assert_eq!(report.rays.unwrap().failed(), 0);
+        assert_eq!(report.rays.unwrap().count.failed(), 0);
         for x in 0..1201 {
             let alpha = (f64::from(x) - 600.0) * (2.0 / 51.0) / 2.0;
             if range.iter().all(|end| (alpha - end).abs() > 1e-6) {
@@ -169,7 +169,7 @@ fn a_hole_of_no_mass_is_not_there() {
         let flat = traced(&scene(&rest)).0;
         let hole = "[spacetime]\nmetric = \"kerr\"\nmass = 1e-9\nspin = 0.7\n";
         let (curved, report) = traced(&scene(&format!("{hole}{rest}")));
-        assert_eq!(report.rays.unwrap().failed(), 0);
+        assert_eq!(report.rays.unwrap().count.failed(), 0);
         let other = (0..flat.body.len()).filter(|&i| flat.body[i] != curved.body[i]).count();
         // Outlines that a pixel's centre is within 1e-8 of.
         assert!(other <= 2, "{other}");
@@ -211,16 +211,8 @@ fn meshes_near_the_hole_are_met_where_brute_force_meets_them() {
     let trace = |accuracy: Accuracy| {
         let (mut film, space) = (Film::new(0, 0), Curved::new(hole).with(accuracy));
         let (shading, samples) = (shading.seen_by(&camera.observer), Samples::new(1));
-        tracer.trace_curved(
-            &scene,
-            &space,
-            &eye,
-            &camera.lens,
-            samples.offsets(),
-            &shading,
-            &mut film,
-            |_| (),
-        );
+        let look = Look { samples: samples.offsets(), shading: &shading, paths: Paths::default() };
+        tracer.trace_curved(&scene, &space, &eye, &camera.lens, &look, &mut film, |_| ());
         film
     };
     let usual = trace(Accuracy::new(1e-10, 0.05));
@@ -286,7 +278,7 @@ fn surfaces_have_no_cracks() {
     let mut scene = scene(text);
     scene.bodies[0].mesh = shapes::sphere(4).placed(&glam::DAffine3::from_scale(DVec3::splat(12.0))).into();
     let (film, report) = traced(&scene);
-    let count = report.rays.unwrap();
+    let count = report.rays.unwrap().count;
     assert_eq!((count.sky, count.failed(), count.impossible), (0, 0, 0), "{count:?}");
     assert!(count.hole > 100 && film.body.iter().all(|b| [0, HOLE].contains(b)));
 }
@@ -296,7 +288,7 @@ fn what_cannot_rest_is_flagged_and_counted() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[spacetime]\nmetric = \"kerr\"\nspin = 0.95\n[camera]\nposition = [0, -9, 1]\nlook_at = [0, 0, 0]\nfov_deg = 40\nsize = [96, 64]\n[[body]]\nname = \"crossing\"\nmesh = \"cube\"\nposition = [-1.6, -0.9, 0]\n";
     let (film, report) = traced(&scene(text));
-    let count = report.rays.unwrap();
+    let count = report.rays.unwrap().count;
     let flagged = film.body.iter().filter(|b| **b == IMPOSSIBLE).count();
     assert!(flagged > 20 && flagged as u64 == count.impossible, "{flagged} {count:?}");
     assert!(film.body.contains(&0), "what is outside of the ergosphere is seen");
@@ -331,17 +323,11 @@ fn rays_that_fail_are_flagged() {
     let space = Curved::new(hole).with(Accuracy { steps: 8, ..Accuracy::new(1e-8, 0.05) });
     let mut film = Film::new(0, 0);
     let (shading, samples) = (shading.seen_by(&camera.observer), Samples::new(1));
-    let count = Tracer::new(&scene).trace_curved(
-        &scene,
-        &space,
-        &eye,
-        &camera.lens,
-        samples.offsets(),
-        &shading,
-        &mut film,
-        |_| (),
-    );
+    let look = Look { samples: samples.offsets(), shading: &shading, paths: Paths::default() };
+    let count =
+        Tracer::new(&scene).trace_curved(&scene, &space, &eye, &camera.lens, &look, &mut film, |_| ());
     let failed = film.body.iter().filter(|b| **b == FAILED).count();
+    let count = count.count;
     assert!(failed > 0 && failed as u64 == count.step_limit, "{count:?}");
     for (body, color) in film.body.iter().zip(&film.color) {
         assert_eq!(*body == FAILED, *color == [1.0, 0.0, 1.0]);

@@ -6,10 +6,11 @@ use clap::{Args, ValueEnum};
 use terrell::color::Coloring;
 use terrell::exposure::Exposure;
 use terrell::light::DopplerAt;
-use terrell::plan::{Method, cheapest};
+use terrell::plan::{Method, USUAL_BOUNCES, USUAL_PATHS, cheapest, has_reflections};
 use terrell::render::{Options, Raster};
 use terrell::scene::{Choice, Projection, Scene, Speed, View};
 use terrell::tone::Tone;
+use terrell::trace::Paths;
 
 /// What there is to see, and how large: what everything made of a scene has in common.
 #[derive(Args)]
@@ -44,9 +45,16 @@ pub struct LookFlags {
     /// Largest distance between a drawn edge and its exact image; cost grows as 1/√ for edges, 1/ for faces
     #[arg(long, value_name = "PX", value_parser = number, default_value = "0.25")]
     pub tolerance: f64,
-    /// Samples a pixel
-    #[arg(long, value_name = "N", value_parser = count, default_value = "1")]
-    samples: u32,
+    /// Samples a pixel [default: 1, or 64 where paths are traced]
+    #[arg(long, value_name = "N", value_parser = count)]
+    samples: Option<u32>,
+    /// How many reflections from surface to surface are followed, where rays are traced [default: 4 where there are
+    /// mirrors, or surfaces that others light, else 0]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=64))]
+    bounces: Option<u32>,
+    /// Which chance decides where reflected rays go
+    #[arg(long, value_name = "N", default_value = "0")]
+    seed: u64,
     /// What a pixel shows
     #[arg(long, value_enum, default_value = "spectral")]
     pub color: ColorFlag,
@@ -195,7 +203,7 @@ impl LookFlags {
         }
         Ok(Options {
             tolerance: self.tolerance,
-            samples: self.samples,
+            samples: self.samples.unwrap_or(1),
             coloring: self.color.coloring(),
             doppler_at: match self.doppler {
                 DopplerFlag::Pixel => DopplerAt::Pixel,
@@ -225,6 +233,7 @@ impl LookFlags {
                 return Err(format!("{flag} is about polygons; rays (--method trace) have none").into());
             }
             (MethodFlag::Trace, None) => (Method::Trace, None),
+            (MethodFlag::Auto, None) if self.bounces.is_some_and(|n| n > 0) => (Method::Trace, None),
             (MethodFlag::Auto, None) => {
                 let (method, why) = cheapest(scene);
                 (method, Some(why))
@@ -237,8 +246,32 @@ impl LookFlags {
             return Err(format!("{flag} {why}").into());
         }
         scene.check_spacetime()?;
+        if scene.spacetime.is_curved() && self.bounces.is_some_and(|n| n > 0) {
+            return Err("--bounces is for flat spacetime; in curved spacetime surfaces do not light each other, so leave it out".into());
+        }
         options.method = method;
+        let usual = if has_reflections(scene) && !scene.spacetime.is_curved() { USUAL_BOUNCES } else { 0 };
+        let bounces = self.bounces.unwrap_or(usual);
+        match method {
+            Method::Trace => options.paths = Paths { bounces, seed: self.seed },
+            Method::Apparent if self.bounces.is_some_and(|n| n > 0) => {
+                return Err(
+                    "--bounces is about rays; polygons (--method apparent) do not light each other".into()
+                );
+            }
+            Method::Apparent => {}
+        }
+        let usual = if options.paths.bounces > 0 { USUAL_PATHS } else { 1 };
+        options.samples = self.samples.unwrap_or(usual);
         Ok(why)
+    }
+
+    /// For what draws by several methods: that none of them is asked for.
+    pub fn check_no_method(&self) -> Result<(), Fault> {
+        if self.method != MethodFlag::Auto || self.raster != RasterFlag::Cpu {
+            return Err("--method and --raster choose one way to draw, and here all are compared; --methods says which of them".into());
+        }
+        Ok(())
     }
 
     /// What the flags say of the projection.

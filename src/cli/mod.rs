@@ -1,6 +1,7 @@
 //! parse → run → report; a file a subcommand.
 
 mod animate;
+mod compare;
 mod completions;
 mod drawing;
 mod locate;
@@ -34,7 +35,8 @@ const EXAMPLES: &str = "Examples:
   terrell animate gate -o gate.mp4                 flying through a gate
   terrell render gate --color doppler -o gate.exr  float channels, Doppler factor included
   terrell transform statue.glb --beta 0.9          its apparent shape, for other programs
-  terrell locate --beta 0.9,0,0 1,2,3              where one point is seen";
+  terrell locate --beta 0.9,0,0 1,2,3              where one point is seen
+  terrell compare street                           every method on one scene: differences and times";
 
 #[derive(Subcommand)]
 enum Command {
@@ -42,6 +44,7 @@ enum Command {
     Animate(animate::Animate),
     Transform(transform::Transform),
     Locate(locate::Locate),
+    Compare(Box<compare::Compare>),
     Scenes(scenes::Scenes),
     Completions(completions::Completions),
 }
@@ -70,6 +73,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Animate(animate) => animate.run(),
         Command::Transform(transform) => transform.run(),
         Command::Locate(locate) => locate.run(),
+        Command::Compare(compare) => compare.run(),
         Command::Scenes(scenes) => scenes.run(),
         Command::Completions(completions) => completions.run(),
     };

@@ -147,6 +147,8 @@ impl Progress {
             ),
             Step::Drawing => "drawing".to_owned(),
             Step::Rows { done, of } => format!("drawing: {done} of {of} rows"),
+            Step::Tracing { of: 1, .. } => "tracing".to_owned(),
+            Step::Tracing { done, of } => format!("tracing, {done} of {of} samples"),
         };
         eprint!("\r\x1b[K{what} … {:.1} s", self.start.elapsed().as_secs_f64());
         self.shown = true;
@@ -207,7 +209,7 @@ impl Done<'_> {
         {
             line.push_str(&format!("note: {}\n", summary::dark_note(self.options.coloring)));
         }
-        for note in self.report.rays.iter().flat_map(summary::ray_notes) {
+        for note in self.report.rays.iter().flat_map(|rays| summary::ray_notes(&rays.count)) {
             line.push_str(&format!("note: {note}\n"));
         }
         for note in &self.scene.notes {
@@ -242,7 +244,7 @@ impl Done<'_> {
             "sky": scene.sky.as_ref().map(|sky| sky.texture.describe()),
             "triangles": report.triangles,
             "pieces": report.pieces,
-            "rays": report.rays.map(|count| summary::rays(count, scene)),
+            "rays": report.rays.map(|rays| summary::rays(rays, scene)),
             "pixels_covered": film.covered(),
             "doppler_range": doppler.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
             "seconds": {

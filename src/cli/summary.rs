@@ -10,7 +10,7 @@ use terrell::relativity::ApparentMap;
 use terrell::render::{Options, Raster, Report};
 use terrell::scene::{Body, Camera, Light, Scene, Spacetime, Stance};
 use terrell::tone::Development;
-use terrell::trace::Count;
+use terrell::trace::{Count, Traced};
 
 /// Relative γ of every body and the camera.
 pub fn gammas(scene: &Scene, camera: &Camera) -> Vec<f64> {
@@ -126,10 +126,17 @@ pub fn spacetime(scene: &Scene) -> Value {
 }
 
 /// How many rays there were.
-pub fn rays(count: Count, scene: &Scene) -> Value {
-    let Count { primary, shadow, blocked, bodies, sky, hole, impossible, .. } = count;
+pub fn rays(traced: Traced, scene: &Scene) -> Value {
+    let Traced { count, noise } = traced;
+    let Count { primary, shadow, blocked, path, bodies, sky, hole, impossible, .. } = count;
     if !scene.spacetime.is_curved() {
-        return json!({ "from_camera": primary, "to_lights": shadow, "to_lights_blocked": blocked });
+        return json!({
+            "from_camera": primary,
+            "to_lights": shadow,
+            "to_lights_blocked": blocked,
+            "of_paths": path,
+            "noise": noise,
+        });
     }
     json!({
         "from_camera": primary,
@@ -186,12 +193,23 @@ pub fn method_in_words(options: &Options, report: &Report, why: Option<&str>) ->
     let why = why.map_or_else(String::new, |why| format!(" ({why})"));
     match (report.rays, options.raster) {
         (Some(rays), _) => {
-            let shadows = match rays.shadow {
-                0 => String::new(),
-                n => format!(", {} to lights", count_in_words(n)),
-            };
-            let primary = count_in_words(rays.primary);
-            format!("ray tracing on the CPU{why}, {} triangles, {primary} rays{shadows}", report.triangles)
+            let Count { primary, shadow, path, .. } = rays.count;
+            let mut words = format!(
+                "ray tracing on the CPU{why}, {} triangles, {} rays",
+                report.triangles,
+                count_in_words(primary)
+            );
+            if shadow > 0 {
+                words.push_str(&format!(", {} to lights", count_in_words(shadow)));
+            }
+            if options.paths.bounces > 0 {
+                let bounces = options.paths.bounces;
+                words.push_str(&format!(", {} of paths of {bounces} reflections", count_in_words(path)));
+            }
+            if let Some(noise) = rays.noise {
+                words.push_str(&format!(", noise {:.2} %", 100.0 * noise));
+            }
+            words
         }
         (None, raster) => format!(
             "apparent shading on the CPU{why}{}, {} triangles cut into {} for {} px",

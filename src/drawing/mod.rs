@@ -13,8 +13,10 @@ mod mesh_edges;
 mod number;
 mod overlay;
 mod scale_bar;
+mod sheet;
 mod text;
 
 pub use caption::{Caption, CaptionError};
 pub use mesh_edges::Edges;
 pub use overlay::{NoScale, Overlay, OverlayOptions, Shot};
+pub use sheet::{DECADES, Panel, Sheet, decade_color};

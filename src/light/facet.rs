@@ -51,19 +51,25 @@ impl<'a> Facet<'a> {
         areas.map(|area| area / normal.length_squared())
     }
 
-    /// A point of its plane, with the normal there.
+    /// A point of its plane that is seen directly, with the normal there.
     #[inline]
     pub fn point(&self, at: DVec3) -> Point {
+        Point::new(at, self.normal(), self.normal_at(at))
+    }
+
+    /// The mesh's normal at a point of its plane, of any length and side.
+    #[inline]
+    pub fn normal_at(&self, at: DVec3) -> DVec3 {
         let facing = self.normal();
         let normals = &self.mesh.normals;
         if normals.is_empty() {
-            return Point::new(at, facing, facing);
+            return facing;
         }
         let weights = clamped(self.weights(at));
         let corners = self.mesh.triangles[self.face];
         let normal = |v: u32| DVec3::from_array(normals[v as usize].map(f64::from));
         let normal = (0..3).map(|i| weights[i] * normal(corners[i])).sum::<DVec3>();
-        Point::new(at, facing, if normal == DVec3::ZERO { facing } else { normal })
+        if normal == DVec3::ZERO { facing } else { normal }
     }
 
     /// A point of its plane, the facet's corners being where they are, as it is seen along a line of sight that points away

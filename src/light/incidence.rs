@@ -18,6 +18,8 @@ pub(super) enum Incidence {
     Ambient {
         /// Unit vector of the body's motion in the light's frame, rest axes.
         axis: DVec3,
+        /// Of that motion.
+        rapidity: f64,
         irradiance: Irradiance,
     },
 }
@@ -45,7 +47,11 @@ impl Incidence {
             LightKind::Ambient => {
                 let u = DVec3::from_array(lamp_from_rest(&light.motion, body).celerity_in_from());
                 let bath = Bath::new(u.length().asinh());
-                Self::Ambient { axis: u.normalize_or(DVec3::X), irradiance: Irradiance::new(&bath) }
+                Self::Ambient {
+                    axis: u.normalize_or(DVec3::X),
+                    rapidity: bath.rapidity(),
+                    irradiance: Irradiance::new(&bath),
+                }
             }
         }
     }
@@ -101,8 +107,7 @@ impl NearLight {
     /// cone. None at the lamp itself.
     pub fn at(&self, light: &Light, point: &Point) -> Option<Arrival> {
         // From the observer's event to the surface's, and from the lamp to there.
-        let seen = FourVector::from_parts(-point.offset.length(), point.offset);
-        let way = self.observer + (self.lamp_from_rest * seen).xyz();
+        let way = self.observer + (self.lamp_from_rest * point.event()).xyz();
         let distance = way.length();
         // Where it goes, in both frames: a null vector, whose times are as the frequencies.
         let arriving = self.rest_from_lamp * FourVector::from_parts(distance, way);

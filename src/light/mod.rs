@@ -6,16 +6,19 @@
 
 mod ambient;
 mod facet;
-mod gloss;
+pub(crate) mod gloss;
 mod incidence;
 mod point;
 mod seen;
 mod shading;
 mod tables;
+mod trail;
 
 pub use facet::Facet;
 pub(crate) use facet::clamped;
 pub use point::Point;
+pub(crate) use seen::SurfaceLight;
 pub use seen::{Approach, SeenShading};
 pub use shading::{DopplerAt, Shading, ShadingError, has_shadows};
 pub use tables::TableInfo;
+pub(crate) use trail::{Source, Trail};

@@ -1,25 +1,37 @@
 use glam::DVec3;
+use terrell_geodesic::{FourVector, Rest};
 
-/// A point of a surface in its body's rest frame. All vectors but `offset` are unit vectors.
+/// A point of a surface at one moment, in its body's rest frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
-    /// From the observer's event to it, in space; as long ago as it is far away.
+    /// From the observer's event to it, in space.
     pub offset: DVec3,
-    /// The surface's normal, on the side the observer sees.
+    /// How long ago, in the rest frame's time: what is seen directly, as long as it is far away.
+    pub ago: f64,
+    /// The surface's normal, a unit vector, on the side that is seen.
     pub normal: DVec3,
+    /// The direction the light leaves in, a unit vector.
+    pub to_eye: DVec3,
 }
 
 impl Point {
-    /// A point whose mesh has the normal `normal`, on a surface that lies square to `facing`: both are turned so that the
-    /// observer sees the surface's side they are on.
+    /// A point the observer sees, whose mesh has the normal `normal`, on a surface that lies square to `facing`: both are
+    /// turned so that the observer sees the surface's side they are on.
     pub fn new(offset: DVec3, facing: DVec3, normal: DVec3) -> Self {
-        let facing = if facing.dot(offset) > 0.0 { -facing } else { facing };
-        let normal = if normal.dot(facing) < 0.0 { -normal } else { normal };
-        Self { offset, normal: normal.normalize_or(facing.normalize_or(DVec3::Z)) }
+        let event = FourVector::from_parts(-offset.length(), offset);
+        Self::seen_from(event, -offset.normalize_or(DVec3::Z), facing, normal)
     }
 
-    /// The direction the light leaves in.
-    pub(super) fn to_eye(self) -> DVec3 {
-        -self.offset.normalize_or(DVec3::Z)
+    /// A point at any event, from the observer's, that is seen from the direction `to_eye`, a unit vector.
+    pub fn seen_from(event: FourVector<Rest>, to_eye: DVec3, facing: DVec3, normal: DVec3) -> Self {
+        let facing = if facing.dot(to_eye) < 0.0 { -facing } else { facing };
+        let normal = if normal.dot(facing) < 0.0 { -normal } else { normal };
+        let normal = normal.normalize_or(facing.normalize_or(DVec3::Z));
+        Self { offset: event.xyz(), ago: -event.t, normal, to_eye }
+    }
+
+    /// From the observer's event to it.
+    pub fn event(&self) -> FourVector<Rest> {
+        FourVector::from_parts(-self.ago, self.offset)
     }
 }

@@ -1,10 +1,11 @@
 use super::ambient::Irradiance;
 use super::incidence::{Incidence, NearLight};
 use super::shading::{MaterialShading, SceneLight, times};
-use super::{DopplerAt, Point, Shading, gloss};
+use super::{DopplerAt, Point, Shading, Source, gloss};
 use crate::color::{Coloring, false_color};
-use crate::scene::{Colors, EmissionLaw, Gloss};
-use crate::spectrum::luminance;
+use crate::scene::{Colors, EmissionLaw, Gloss, LightKind};
+use crate::spectrum::{Beyond, Spectrum, luminance};
+use glam::DVec3;
 use terrell_geodesic::{FourVector, Rest};
 
 /// The way light came to a point of a surface, backwards.
@@ -15,6 +16,75 @@ pub struct Approach {
     pub back: FourVector<Rest>,
     /// Whether it ends there.
     pub ends: bool,
+}
+
+/// Light that reaches a point.
+pub(crate) struct Lighting<'a> {
+    /// Where it comes from, a unit vector in the surface's rest frame.
+    pub to_light: DVec3,
+    /// ν at the surface over ν of the light.
+    pub doppler: f64,
+    spectrum: &'a Spectrum,
+    /// As what there is of it: radiance times a solid angle, or radiance if it shines from everywhere.
+    scale: f64,
+    /// Without spectra, that, too.
+    color: [f64; 3],
+}
+
+impl Lighting<'_> {
+    /// As a source on a surface that is seen at a Doppler factor.
+    pub fn source(&self, doppler: f64) -> Source<'_> {
+        Source {
+            spectrum: self.spectrum,
+            scale: self.scale,
+            color: self.color,
+            unshifted: &None,
+            strength: 1.0,
+            doppler: self.doppler * doppler,
+        }
+    }
+}
+
+/// A material, as light meets it.
+#[derive(Clone, Copy)]
+pub(crate) struct SurfaceLight<'a> {
+    coloring: Coloring,
+    material: &'a MaterialShading,
+}
+
+impl<'a> SurfaceLight<'a> {
+    /// Whether it reflects.
+    pub fn is_lit(&self) -> bool {
+        self.material.lit
+    }
+
+    pub fn gloss(&self) -> &'a Gloss {
+        &self.material.gloss
+    }
+
+    /// What is assumed of its colours outside the visible.
+    pub fn beyond(&self) -> Beyond {
+        self.material.spectrum.beyond
+    }
+
+    /// What it shines with, in a direction at this cosine to its normal, as a source that is seen at a Doppler factor; none
+    /// if it does not.
+    pub fn source(&self, colors: Colors, cosine: f64, doppler: f64) -> Option<Source<'a>> {
+        let material = self.material;
+        let own = if material.lit { colors.emission } else { colors.sum() };
+        if own == [0.0; 3] || self.coloring == Coloring::Doppler {
+            return None;
+        }
+        let law = material.law.factor(cosine);
+        Some(Source {
+            spectrum: &material.spectrum,
+            scale: material.scale,
+            color: own.map(|c| f64::from(c) * law),
+            unshifted: &material.unshifted,
+            strength: f64::from(material.strength),
+            doppler,
+        })
+    }
 }
 
 /// A [`Shading`] as one observer sees it at one moment.
@@ -38,6 +108,16 @@ impl<'a> SeenShading<'a> {
     /// How many lights there are.
     pub fn lights(&self) -> usize {
         self.shading.lights.len()
+    }
+
+    /// Whether a light shines from everywhere.
+    pub(crate) fn is_ambient(&self, light: usize) -> bool {
+        matches!(self.shading.lights[light].light.kind, LightKind::Ambient)
+    }
+
+    /// What a pixel shows.
+    pub fn coloring(&self) -> Coloring {
+        self.shading.coloring
     }
 
     /// Whether a material of a body reflects light.
@@ -110,6 +190,52 @@ impl<'a> SeenShading<'a> {
         }
     }
 
+    /// A material of a body, for those who follow light further.
+    pub(crate) fn surface(&self, body: usize, material: usize) -> SurfaceLight<'a> {
+        SurfaceLight {
+            coloring: self.shading.coloring,
+            material: &self.shading.bodies[body].materials[material],
+        }
+    }
+
+    /// Light of one of the lights that reaches a point, if its way is free; of one that shines from everywhere, that from
+    /// the direction `to_light`.
+    pub(crate) fn arriving(
+        &self,
+        body: usize,
+        light: usize,
+        point: &Point,
+        to_light: Option<DVec3>,
+    ) -> Option<Lighting<'a>> {
+        let SceneLight { light: of, scale, color } = &self.shading.lights[light];
+        let (to_light, lamp, amount) = match (&self.shading.bodies[body].incidences[light], to_light) {
+            (Incidence::Distant { to_light, doppler }, None) => (*to_light, *doppler, of.strength),
+            (Incidence::Near, None) => {
+                let arrival = self.near[body][light].as_ref()?.at(of, point)?;
+                (arrival.to_light, arrival.doppler, arrival.irradiance)
+            }
+            // Radiance, not irradiance.
+            (Incidence::Ambient { axis, rapidity, .. }, Some(to)) => {
+                let (gamma, speed) = (rapidity.cosh(), rapidity.sinh());
+                (to, 1.0 / (gamma - speed * axis.dot(to)), of.strength)
+            }
+            _ => return None,
+        };
+        let geometry = self.shading.coloring == Coloring::Geometry;
+        let amount = match self.shading.bodies[body].incidences[light] {
+            Incidence::Ambient { .. } => amount,
+            // Radiance goes with D³, but from an angle smaller by D².
+            _ if !geometry => amount / (lamp * lamp),
+            _ => amount,
+        };
+        let spectral = self.shading.coloring == Coloring::Spectral;
+        let (scale, color) = match spectral {
+            true => (scale * amount, of.color.map(f64::from)),
+            false => (1.0, color.map(|c| f64::from(c) * amount)),
+        };
+        Some(Lighting { to_light, doppler: lamp, spectrum: &of.spectrum, scale, color })
+    }
+
     fn at_point(
         &self,
         body: usize,
@@ -123,7 +249,7 @@ impl<'a> SeenShading<'a> {
         let shines = if material.lit { colors.emission } else { colors.sum() };
         let mut sum = [0.0; 3];
         if shines != [0.0; 3] {
-            let law = material.law.factor(point.normal.dot(point.to_eye()));
+            let law = material.law.factor(point.normal.dot(point.to_eye));
             sum = material.shines(coloring, doppler, shines).map(|v| v * law as f32);
         }
         if material.lit {
@@ -145,8 +271,8 @@ impl<'a> SeenShading<'a> {
         base: [f32; 3],
         point: &Point,
     ) -> [f32; 3] {
-        let SceneLight { light, color } = &self.shading.lights[index];
-        let lobe = |to_light| gloss::reflected(base, &material.gloss, point.normal, to_light, point.to_eye());
+        let SceneLight { light, color, .. } = &self.shading.lights[index];
+        let lobe = |to_light| gloss::reflected(base, &material.gloss, point.normal, to_light, point.to_eye);
         let arriving = match &self.shading.bodies[body].incidences[index] {
             Incidence::Distant { to_light, doppler: lamp } => {
                 Some(Arriving::at(*lamp, light.strength, lobe(*to_light)))
@@ -155,7 +281,7 @@ impl<'a> SeenShading<'a> {
                 .as_ref()
                 .and_then(|near| near.at(light, point))
                 .map(|arrival| Arriving::at(arrival.doppler, arrival.irradiance, lobe(arrival.to_light))),
-            Incidence::Ambient { axis, irradiance } => Some(Arriving::around(
+            Incidence::Ambient { axis, irradiance, .. } => Some(Arriving::around(
                 axis.dot(point.normal),
                 light.strength,
                 irradiance,

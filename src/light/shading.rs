@@ -37,6 +37,8 @@ pub(super) struct SceneLight {
     pub light: Light,
     /// Linear sRGB unshifted; without spectra, what its colour is multiplied by.
     pub color: [f32; 3],
+    /// Of its spectrum; see [`Spectrum::scale`].
+    pub scale: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -54,6 +56,9 @@ pub(super) struct MaterialShading {
     pub gloss: Gloss,
     /// How much it shines, by luminance or by radiance as its spectrum says.
     pub strength: f32,
+    pub spectrum: Spectrum,
+    /// Of its spectrum; see [`Spectrum::scale`].
+    pub scale: f64,
     /// Unshifted colours of what shines in red, green and blue; none where these are themselves.
     pub unshifted: Option<[f32; 9]>,
     /// Of what it shines with.
@@ -128,7 +133,8 @@ impl Shading {
                 } else {
                     color.map(|v| v.max(0.0))
                 };
-                Ok(SceneLight { light: light.clone(), color })
+                let scale = light.spectrum.scale().map_err(fault)?;
+                Ok(SceneLight { light: light.clone(), color, scale })
             })
             .collect::<Result<Vec<_>, ShadingError>>()?;
         let mut bodies = Vec::with_capacity(scene.bodies.len());
@@ -157,6 +163,8 @@ impl Shading {
                         law: material.law,
                         gloss: material.gloss,
                         strength: material.spectrum.strength.value() as f32,
+                        spectrum: material.spectrum.clone(),
+                        scale: material.spectrum.scale().map_err(fault)?,
                         unshifted: unshifted(&material.spectrum).map_err(fault)?,
                         own: own.transpose().map_err(fault)?,
                         reflected,

@@ -21,7 +21,12 @@ impl Builtin {
     }
 }
 
-const SCENES: [Builtin; 10] = [
+const SCENES: [Builtin; 12] = [
+    Builtin {
+        name: "box",
+        about: "a box lit by a glowing cube that flies through it at 0.8c, and mirrored in a ball: light of bodies on each other",
+        toml: include_str!("../../assets/box.toml"),
+    },
     Builtin {
         name: "cube",
         about: "a cube passing at 0.9c, seen as it appears abreast: it seems to turn (Fig. 2)",
@@ -46,6 +51,11 @@ const SCENES: [Builtin; 10] = [
         name: "hot",
         about: "the lattice, glowing at 4500 K: blue-white ahead, dull red behind (Eq. 3, 5)",
         toml: include_str!("../../assets/hot.toml"),
+    },
+    Builtin {
+        name: "shadow",
+        about: "a cube passing at 0.8c over a floor, under a lamp: its shadow is where it was",
+        toml: include_str!("../../assets/shadow.toml"),
     },
     Builtin {
         name: "sphere",
@@ -111,8 +121,20 @@ macro_rules! meshes {
     };
 }
 
-const MESHES: [(&str, &str, &str); 10] =
-    meshes!["cube", "gate", "lattice", "globe", "street", "tram", "tram_green", "car", "station", "train"];
+const MESHES: [(&str, &str, &str); 12] = meshes![
+    "cube",
+    "gate",
+    "lattice",
+    "globe",
+    "ball",
+    "plate",
+    "street",
+    "tram",
+    "tram_green",
+    "car",
+    "station",
+    "train"
+];
 
 /// The names of the meshes that ship.
 pub fn builtin_meshes() -> impl Iterator<Item = &'static str> + Clone {

@@ -85,6 +85,21 @@ pub struct Gloss {
     pub metallic: f32,
 }
 
+impl Gloss {
+    /// Smoother, the lobe is one direction where paths are traced.
+    const MIRROR: f32 = 0.03;
+
+    /// Whether there is no lobe.
+    pub fn is_even(&self) -> bool {
+        self.reflectance == 0.0 && self.metallic == 0.0
+    }
+
+    /// Whether it is as smooth as a mirror.
+    pub fn is_mirror(&self) -> bool {
+        self.roughness <= Self::MIRROR
+    }
+}
+
 impl Default for Gloss {
     fn default() -> Self {
         Self { reflectance: 0.0, roughness: 0.5, metallic: 0.0 }

@@ -16,7 +16,9 @@ mod tabulated;
 
 pub use basis::{Beyond, reflectances};
 pub(crate) use cubic::cubic;
+pub(crate) use observer::matching_at;
 pub use observer::{XYZ_FROM_RGB, luminance, rgb_from_xyz, xyz_of_black_body};
+pub(crate) use response::of_line;
 pub use response::{Matrix, Response};
 pub use shape::{Shape, Spectrum, SpectrumError, Strength};
 pub use table::{DopplerTable, RowTable};

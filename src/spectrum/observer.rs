@@ -32,7 +32,7 @@ pub(super) fn matching() -> impl Iterator<Item = (f64, DVec3)> {
 ///
 /// Beyond the table's ends, where they are at most 6·10⁻⁴, they fade by a tenth a nanometre, about as they do there, and
 /// more, until after a hundred they are gone: a line that leaves the visible is not switched off.
-pub(super) fn matching_at(nm: f64) -> DVec3 {
+pub(crate) fn matching_at(nm: f64) -> DVec3 {
     let place = nm - VISIBLE_NM[0];
     let away = (-place).max(place - (LINES - 1) as f64);
     if away > 0.0 {

@@ -114,7 +114,7 @@ pub(super) fn of_table(table: &Tabulated, beyond: Beyond, whole: f64, add: &mut 
 
 /// XYZ of a line by its own profile: the radiance of every part of it goes with D⁴. `filter` by wavelength at the
 /// surface.
-pub(super) fn of_line(shape: &Shape, lamp: f64, doppler: f64, filter: impl Fn(f64) -> f64) -> DVec3 {
+pub(crate) fn of_line(shape: &Shape, lamp: f64, doppler: f64, filter: impl Fn(f64) -> f64) -> DVec3 {
     let Shape::Line { centre_nm, width_nm } = shape else { return DVec3::ZERO };
     // Of a Gaussian a sum with steps of less than half its standard deviation is exact to 1e-8.
     const STEPS: i32 = 64;

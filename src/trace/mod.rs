@@ -13,9 +13,12 @@
 mod beam;
 mod chord;
 mod curved;
+mod emitters;
 mod lanes;
 mod origin;
 mod packet;
+mod path;
+mod random;
 mod ray;
 mod stage;
 mod tile;
@@ -24,7 +27,10 @@ mod tree;
 use crate::film::Film;
 use crate::light::SeenShading;
 use crate::scene::{Camera, Eye, Lens, Scene};
+use crate::spectrum::luminance;
 use chord::Goal;
+use emitters::Emitters;
+use path::World;
 use rayon::prelude::*;
 use stage::Stage;
 use std::sync::Arc;
@@ -33,7 +39,44 @@ use terrell_geodesic::{Spacetime, Wide};
 use tile::{Job, SIDE, Tile};
 use tree::Tree;
 
+pub use path::Paths;
 pub use tile::Count;
+
+/// How a scene is looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Look<'a> {
+    /// Offsets of the samples from the pixels' corners.
+    pub samples: &'a [[f64; 2]],
+    /// For the camera's observer.
+    pub shading: &'a SeenShading<'a>,
+    /// Light of surfaces on each other.
+    pub paths: Paths,
+}
+
+/// What was done.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Traced {
+    /// How many rays there were.
+    pub count: Count,
+    /// What pixels are off by, by the chance of paths and of samples, of their brightness: root mean square. None where no
+    /// path was followed, or the samples cannot be halved.
+    pub noise: Option<f64>,
+}
+
+/// How often progress is told of.
+const PASSES: usize = 32;
+
+/// From the sums of the first half of the samples and of all: the two halves are off by as much, the one independently of
+/// the other, so that their difference is what their sum is off by.
+fn noise(half: &[[f32; 3]], all: &[[f32; 3]]) -> Option<f64> {
+    let (mut off, mut whole) = (0.0, 0.0);
+    for (half, all) in half.iter().zip(all) {
+        let [half, all] = [half, all].map(|c| f64::from(luminance(*c)));
+        off += (all - 2.0 * half).powi(2);
+        whole += all * all;
+    }
+    (!half.is_empty() && whole > 0.0).then(|| (off / whole).sqrt())
+}
 
 /// A scene to be traced: its meshes with their hierarchies of boxes, which are the same for all moments and observers.
 #[derive(Clone, Debug)]
@@ -69,24 +112,50 @@ impl Tracer {
     }
 
     /// Traces what a camera sees onto a film, which is cleared first; `scene` is the one this was made of, `samples` are
-    /// offsets from the pixels' corners, and `shading` is for the camera's observer.
+    /// offsets from the pixels' corners, and `shading` is for the camera's observer. `step` is told how many of the
+    /// samples are done, and of how many.
     pub fn trace(
         &self,
         scene: &Scene,
         camera: &Camera,
-        samples: &[[f64; 2]],
-        shading: &SeenShading<'_>,
+        look: &Look<'_>,
         film: &mut Film,
-    ) -> Count {
+        mut step: impl FnMut(usize, usize),
+    ) -> Traced {
+        let Look { samples, shading, paths } = *look;
         film.clear(camera.lens.width(), camera.lens.height());
-        let stage = self.stage(scene, camera, shading);
+        let follows = paths.bounces > 0;
+        let stage = self.stage(scene, camera, shading.lights() > 0 || follows);
+        let emitters = follows.then(|| Emitters::new(&stage.targets, shading));
+        let coloring = shading.coloring();
+        let world =
+            emitters.as_ref().map(|emitters| World { stage: &stage, shading, emitters, coloring, paths });
+        let lens = &camera.lens;
         let world_from_observer = || camera.observer.observer_from_world::<Wide>().inverse().rounded();
         let sky = scene.sky.as_ref().map(|sky| (sky, world_from_observer()));
-        let job = Job { stage: &stage, lens: &camera.lens, shading, sky, samples, vectors: self.vectors };
-        film.bands(SIDE)
-            .enumerate()
-            .map_init(Tile::default, |tile, (index, rows)| tile.draw_band(&job, index as u32 * SIDE, rows))
-            .reduce(Count::default, Count::add)
+        let vectors = self.vectors;
+        let job = Job { stage: &stage, lens, shading, sky, samples, vectors, world: world.as_ref() };
+        let all = samples.len();
+        let passes = if follows { PASSES.min(all) } else { 1 };
+        let mut traced = Traced::default();
+        let mut half = Vec::new();
+        for pass in 0..passes {
+            let range = pass * all / passes..(pass + 1) * all / passes;
+            step(range.start, all);
+            let count = film
+                .bands(SIDE)
+                .enumerate()
+                .map_init(Tile::default, |tile, (index, rows)| {
+                    tile.draw_band(&job, index as u32 * SIDE, range.clone(), rows)
+                })
+                .reduce(Count::default, Count::add);
+            traced.count = traced.count.add(count);
+            if follows && 2 * range.end == all {
+                half.clone_from(&film.color);
+            }
+        }
+        traced.noise = noise(&half, &film.color);
+        traced
     }
 
     /// Only the rays, to measure how fast they are: nothing is shaded, and nothing kept.
@@ -97,9 +166,10 @@ impl Tracer {
         samples: &[[f64; 2]],
         shading: &SeenShading<'_>,
     ) -> Count {
-        let stage = self.stage(scene, camera, shading);
-        let job =
-            Job { stage: &stage, lens: &camera.lens, shading, sky: None, samples, vectors: self.vectors };
+        let stage = self.stage(scene, camera, shading.lights() > 0);
+        let lens = &camera.lens;
+        let vectors = self.vectors;
+        let job = Job { stage: &stage, lens, shading, sky: None, samples, vectors, world: None };
         (0..camera.lens.height().div_ceil(SIDE))
             .into_par_iter()
             .map_init(Tile::default, |tile, band| tile.cast_band(&job, band * SIDE))
@@ -112,7 +182,8 @@ impl Tracer {
     /// A body is a rigid mesh in the spacetime's coordinates, moving uniformly in them, X = L(celerity)·X′ + origin as in
     /// flat spacetime. A ray's chords are met with its boxes, inflated by how far the ray may be from them; whether and
     /// where it goes through a triangle is then decided on the ray itself. D is the quotient of the products of wave vector
-    /// and four-velocity at both ends, in the metric there. Lights are left out.
+    /// and four-velocity at both ends, in the metric there. Lights and light of
+    /// surfaces on each other are left out.
     #[expect(clippy::too_many_arguments, reason = "as many as things meet in a picture")]
     pub fn trace_curved<S: Spacetime>(
         &self,
@@ -120,11 +191,11 @@ impl Tracer {
         space: &S,
         eye: &Eye,
         lens: &Lens,
-        samples: &[[f64; 2]],
-        shading: &SeenShading<'_>,
+        look: &Look<'_>,
         film: &mut Film,
         done: impl Fn(u32) + Sync,
-    ) -> Count {
+    ) -> Traced {
+        let Look { samples, shading, .. } = *look;
         film.clear(lens.width(), lens.height());
         let goals = scene.bodies.iter().enumerate().zip(&self.trees).map(|((index, body), tree)| {
             let tree = tree.clone().unwrap_or_else(|| Arc::new(Tree::new(&body.mesh)));
@@ -133,7 +204,8 @@ impl Tracer {
         let goals: Vec<Goal> = goals.collect();
         let job = curved::Job { space, goals: &goals, eye, lens, sky: scene.sky.as_ref(), shading, samples };
         let finished = AtomicU32::new(0);
-        film.bands(SIDE)
+        let count = film
+            .bands(SIDE)
             .enumerate()
             .map_init(curved::Band::default, |band, (index, mut rows)| {
                 let count = band.draw(&job, index as u32 * SIDE, &mut rows);
@@ -141,15 +213,16 @@ impl Tracer {
                 done(finished.fetch_add(rows, Ordering::Relaxed) + rows);
                 count
             })
-            .reduce(Count::default, Count::add)
+            .reduce(Count::default, Count::add);
+        Traced { count, noise: None }
     }
 
-    fn stage(&self, scene: &Scene, camera: &Camera, shading: &SeenShading<'_>) -> Stage {
+    fn stage(&self, scene: &Scene, camera: &Camera, lit: bool) -> Stage {
         let bodies = scene.bodies.iter().enumerate().zip(&self.trees).map(|((index, body), tree)| {
             let mesh = body.mesh_seen(&camera.observer);
             let tree = tree.clone().unwrap_or_else(|| Arc::new(Tree::new(&mesh)));
             (index, body.motion, mesh, tree)
         });
-        Stage::new(bodies.collect(), camera, shading.lights() > 0)
+        Stage::new(bodies.collect(), camera, lit)
     }
 }

@@ -22,14 +22,24 @@ pub(super) struct Ray<'a> {
 pub(super) struct Hit {
     /// s.
     pub at: f64,
-    /// Number of the triangle in the mesh.
-    pub face: u32,
+    /// Number of the triangle in the tree.
+    pub leaf: u32,
 }
 
 impl<'a> Ray<'a> {
     /// One that hits nothing.
     pub fn nowhere(map: &'a ApparentMap) -> Self {
         Self { origin: Origin::of_observer(map), direction: DVec3::X, range: [0.0; 2], but: None }
+    }
+
+    /// The nearest triangle.
+    pub fn nearest(&self, tree: &Tree, stack: &mut Vec<u32>) -> Option<Hit> {
+        let mut nearest = None;
+        self.visit(tree, stack, |hit| {
+            nearest = Some(hit);
+            Some(hit.at)
+        });
+        nearest
     }
 
     /// Whether there is any triangle.
@@ -79,14 +89,15 @@ impl<'a> Ray<'a> {
                 }
                 continue;
             }
-            for leaf in &tree.leaves[node.first as usize..(node.first + node.count) as usize] {
+            for number in node.first..node.first + node.count {
+                let leaf = &tree.leaves[number as usize];
                 if self.but == Some(leaf.face) {
                     continue;
                 }
                 let corners = leaf.corners.map(|c| self.origin.to(c) * unit);
                 let Some(at) = meet(corners, self.direction * unit) else { continue };
                 if at > self.range[0] && at < far {
-                    match seen(Hit { at, face: leaf.face }) {
+                    match seen(Hit { at, leaf: number }) {
                         Some(shorter) => far = shorter,
                         None => return,
                     }

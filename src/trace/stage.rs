@@ -2,7 +2,6 @@ use super::origin::Origin;
 use super::packet::{PACKET, Packet};
 use super::ray::Ray;
 use super::tree::Tree;
-use crate::light::Approach;
 use crate::relativity::{ApparentMap, Motion, RestSky};
 use crate::scene::{Camera, Mesh};
 use glam::DVec3;
@@ -82,8 +81,8 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 }
 
 impl Stage {
-    /// `trees` are those of the meshes.
-    pub fn new(bodies: Vec<(usize, Motion, Arc<Mesh>, Arc<Tree>)>, camera: &Camera, shadows: bool) -> Self {
+    /// Of bodies with their meshes and the trees of those; `lit` if ways from body to body will be asked for.
+    pub fn new(bodies: Vec<(usize, Motion, Arc<Mesh>, Arc<Tree>)>, camera: &Camera, lit: bool) -> Self {
         let mut motions: Vec<Motion> = Vec::new();
         let mut targets = Vec::with_capacity(bodies.len());
         for (body, motion, mesh, tree) in bodies {
@@ -99,7 +98,7 @@ impl Stage {
             let rest_from_world = to.world_from_rest::<Wide>().inverse();
             motions.iter().map(|from| (rest_from_world * from.world_from_rest::<Wide>()).rounded()).collect()
         };
-        let between = if shadows { motions.iter().map(between).collect() } else { Vec::new() };
+        let between = if lit { motions.iter().map(between).collect() } else { Vec::new() };
         Self { targets, between }
     }
 
@@ -121,37 +120,44 @@ impl Stage {
         blocked
     }
 
-    /// A way to a light in the rest frame of a target.
-    fn ray<'a>(&self, way: &Way, index: usize, target: &'a Target) -> Ray<'a> {
+    /// From the rest frame of one target to that of another, both by their indices.
+    pub fn between(&self, to: usize, from: usize) -> Lorentz<Rest, Rest> {
+        self.between[self.targets[to].motion][self.targets[from].motion]
+    }
+
+    /// A way in the rest frame of a target.
+    pub fn ray<'a>(&self, way: &Way, index: usize, target: &'a Target) -> Ray<'a> {
         let receiver = &self.targets[way.from];
         let (at, back) = if target.motion == receiver.motion {
             // The same frame up to where its origin is.
-            (way.point, way.approach.back.xyz())
+            (way.event.xyz(), way.back.xyz())
         } else {
-            let event = FourVector::from_parts(-way.point.length(), way.point);
             let map = &self.between[target.motion][receiver.motion];
-            ((*map * event).xyz(), (*map * way.approach.back).xyz())
+            ((*map * way.event).xyz(), (*map * way.back).xyz())
         };
         let close = CLOSE * (at.length() + 1.0 / target.tree.scale) / back.length();
         Ray {
             origin: Origin::at(&target.map, at),
             direction: back,
-            range: [close, if way.approach.ends { 1.0 } else { f64::INFINITY }],
+            range: [close, way.far],
             but: (index == way.from).then_some(way.face),
         }
     }
 }
 
-/// The way from a point of a triangle to a light.
+/// A way from a point of a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Way {
     /// Index of the target the triangle is of.
     pub from: usize,
     /// Number of the triangle in the mesh.
     pub face: u32,
-    /// From the observer, in the target's rest frame.
-    pub point: DVec3,
-    pub approach: Approach,
+    /// From the observer's event, in the target's rest frame.
+    pub event: FourVector<Rest>,
+    /// A null vector of that frame into the past, along the way.
+    pub back: FourVector<Rest>,
+    /// Where it ends, in units of that vector.
+    pub far: f64,
 }
 
 /// Nearer to where a ray begins, of the distance from the observer and the size of what may be hit, it is the surface

@@ -1,12 +1,15 @@
 use super::beam::{Beam, Directed, NONE, RAYS, SAME, facing};
 use super::origin::Origin;
 use super::packet::{PACKET, Packet};
+use super::path::{self, Vertex, World};
+use super::random::Random;
 use super::stage::{Stage, Target, Way};
 use crate::film::Rows;
 use crate::light::{Facet, Point, SeenShading};
 use crate::scene::{Lens, Sky};
 use glam::{DVec2, DVec3};
-use terrell_geodesic::{FourVector, Lorentz, Observer, World};
+use std::ops::Range;
+use terrell_geodesic::{FourVector, Lorentz, Observer};
 
 /// Pixels of a tile's side.
 pub(super) const SIDE: u32 = 8;
@@ -16,6 +19,8 @@ pub(super) const SIDE: u32 = 8;
 pub(super) struct Tile {
     beam: Beam,
     packet: Packet,
+    paths: path::Scratch,
+    top: u32,
     sights: Vec<Sight>,
     rays: Vec<Directed>,
     /// Of which lines of sight they are.
@@ -29,11 +34,11 @@ pub(super) struct Tile {
 }
 
 /// What was done.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
     /// Rays from the camera.
     pub primary: u64,
-    /// Rays from surfaces to lights, by light and none; of them, those that something was in the way of.
+    /// Rays from what is seen to lights.
     pub shadow: u64,
     /// Of those, how many something stood in the way of.
     pub blocked: u64,
@@ -51,6 +56,8 @@ pub struct Count {
     pub drifted: u64,
     /// Those given up because the metric was none, or something no number.
     pub singular: u64,
+    /// Rays of paths from surface to surface, and from there to lights.
+    pub path: u64,
 }
 
 impl Count {
@@ -67,6 +74,7 @@ impl Count {
         self.step_limit += other.step_limit;
         self.drifted += other.drifted;
         self.singular += other.singular;
+        self.path += other.path;
         self
     }
 
@@ -100,38 +108,47 @@ pub(super) struct Job<'a> {
     pub lens: &'a Lens,
     pub shading: &'a SeenShading<'a>,
     /// What lies behind everything, and the map from the observer to its frame.
-    pub sky: Option<(&'a Sky, Lorentz<World, Observer>)>,
+    pub sky: Option<(&'a Sky, Lorentz<terrell_geodesic::World, Observer>)>,
     /// Of the samples, in pixels from a pixel's corner.
     pub samples: &'a [[f64; 2]],
     /// Whether AVX2 may be used.
     pub vectors: bool,
+    /// Where light of surfaces on each other is followed.
+    pub world: Option<&'a World<'a>>,
 }
 
 impl Tile {
-    /// Draws a band of the film, [`SIDE`] rows from `top` on.
-    pub fn draw_band(&mut self, job: &Job<'_>, top: u32, mut rows: Rows<'_>) -> Count {
-        let weight = 1.0 / job.samples.len() as f32;
-        self.follow_band(job, top, |tile, sample| tile.develop(job, weight, sample == 0, &mut rows))
+    /// Draws some of the samples of a band of the film, [`SIDE`] rows from `top` on.
+    pub fn draw_band(&mut self, job: &Job<'_>, top: u32, pass: Range<usize>, mut rows: Rows<'_>) -> Count {
+        self.follow_band(job, top, pass, |tile, sample| tile.develop(job, sample, &mut rows))
     }
 
     /// Only follows the band's rays.
     pub fn cast_band(&mut self, job: &Job<'_>, top: u32) -> Count {
-        self.follow_band(job, top, |_, _| ())
+        self.follow_band(job, top, 0..job.samples.len(), |_, _| ())
     }
 
-    /// Follows all rays of a band, tile by tile and sample by sample.
-    fn follow_band(&mut self, job: &Job<'_>, top: u32, mut done: impl FnMut(&Self, usize)) -> Count {
+    /// Follows the rays of a band, tile by tile and sample by sample.
+    fn follow_band(
+        &mut self,
+        job: &Job<'_>,
+        top: u32,
+        pass: Range<usize>,
+        mut done: impl FnMut(&mut Self, usize),
+    ) -> Count {
         self.count = Count::default();
+        self.top = top;
         let width = job.lens.width();
         let height = SIDE.min(job.lens.height() - top);
         for left in (0..width).step_by(SIDE as usize) {
-            for (number, sample) in job.samples.iter().enumerate() {
-                self.look(job, [left, top], [SIDE.min(width - left), height], *sample);
+            for number in pass.clone() {
+                self.look(job, [left, top], [SIDE.min(width - left), height], job.samples[number]);
                 self.find(job);
                 self.light(job);
                 done(self, number);
             }
         }
+        self.count.path += std::mem::take(&mut self.paths.rays);
         self.count
     }
 
@@ -250,7 +267,9 @@ impl Tile {
                 let target = &job.stage.targets[sight.target];
                 let Some(approach) = job.shading.approach(target.body, light, point) else { continue };
                 let face = target.tree.leaves[sight.leaf as usize].face;
-                self.ways.push((*number, Way { from: sight.target, face, point: point.offset, approach }));
+                let far = if approach.ends { 1.0 } else { f64::INFINITY };
+                let (event, back) = (point.event(), approach.back);
+                self.ways.push((*number, Way { from: sight.target, face, event, back, far }));
             }
             self.count.shadow += self.ways.len() as u64;
             for ways in self.ways.chunks(PACKET) {
@@ -266,7 +285,8 @@ impl Tile {
     }
 
     /// Looks up what the triangles look like.
-    fn develop(&self, job: &Job<'_>, weight: f32, centre: bool, rows: &mut Rows<'_>) {
+    fn develop(&mut self, job: &Job<'_>, sample: usize, rows: &mut Rows<'_>) {
+        let weight = 1.0 / job.samples.len() as f32;
         // Each of many samples stands for a part of the pixel.
         let spread = f64::from(weight.sqrt());
         for (number, sight) in self.sights.iter().enumerate() {
@@ -284,18 +304,41 @@ impl Tile {
                     |step: DVec2| job.lens.direction(sight.at + step * spread).unwrap_or(sight.direction);
                 [sight.direction, to(DVec2::X), to(DVec2::Y)].map(|v| target.rest_direction(v, v.length()))
             };
-            let light = job.shading.radiance_with_shadows(
+            let material = target.mesh.material_index(facet.face());
+            let mut light = job.shading.radiance_with_shadows(
                 target.body,
-                target.mesh.material_index(facet.face()),
+                material,
                 doppler,
                 || facet.colors(at, sights),
                 || facet.point(at),
-                |light| self.lit[light] >> number & 1 == 1,
+                // Paths find out where light from everywhere comes in.
+                |light| {
+                    self.lit[light] >> number & 1 == 1
+                        && !(job.world.is_some() && job.shading.is_ambient(light))
+                },
             );
+            if let Some(world) = job.world
+                && job.shading.is_lit(target.body, material)
+            {
+                let vertex = Vertex {
+                    target: sight.target,
+                    leaf: sight.leaf,
+                    face: facet.face() as u32,
+                    point: facet.point(at),
+                    colors: facet.colors(at, sights),
+                    surface: job.shading.surface(target.body, material),
+                    doppler,
+                };
+                let pixel = u64::from(self.top) * u64::from(job.lens.width()) + sight.pixel as u64;
+                let mut random = Random::new(world.paths.seed, pixel, sample as u64);
+                let more = world.indirect(vertex, &mut random, &mut self.paths);
+                let more = more.map(|v| if v.is_finite() { v as f32 } else { 0.0 });
+                light = [0, 1, 2].map(|c| light[c] + more[c]);
+            }
             let i = sight.pixel;
             let color = &mut rows.color[i];
             *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
-            if centre {
+            if sample == 0 {
                 rows.distance[i] = (sight.length / sight.nearness) as f32;
                 rows.doppler[i] = doppler as f32;
                 rows.body[i] = target.body as i32;
@@ -311,7 +354,7 @@ impl Sight {
         &self,
         job: &Job<'_>,
         sky: &Sky,
-        world_from_observer: &Lorentz<World, Observer>,
+        world_from_observer: &Lorentz<terrell_geodesic::World, Observer>,
         weight: f32,
         centre: bool,
         rows: &mut Rows<'_>,

@@ -11,7 +11,7 @@ mod vehicles;
 
 pub use gate::gate;
 pub use lattice::lattice;
-pub use sphere::{globe, sphere};
+pub use sphere::{ball, globe, sphere};
 pub use station::station;
 pub use street::street;
 pub use train::train;
@@ -24,11 +24,13 @@ use builder::Builder;
 pub type Make = fn() -> Mesh;
 
 /// The meshes that ship: what scenes call them, and what makes them.
-pub const SHIPPED: [(&str, Make); 10] = [
+pub const SHIPPED: [(&str, Make); 12] = [
     ("cube", cube),
     ("gate", gate),
     ("lattice", lattice),
     ("globe", globe),
+    ("ball", ball),
+    ("plate", plate),
     ("street", street),
     ("tram", || tram([0.75, 0.1, 0.06])),
     ("tram_green", || tram([0.06, 0.42, 0.16])),
@@ -49,6 +51,19 @@ pub fn cube() -> Mesh {
     builder.finish()
 }
 
+/// A square of side 2 around the origin, square to z, white: floors and walls.
+pub fn plate() -> Mesh {
+    let mut builder = Builder::default();
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let [a, b, c, d] = corners.map(|[x, y]| glam::DVec3::new(x, y, 0.0));
+    builder.triangle([a, b, c], WHITE);
+    builder.triangle([a, c, d], WHITE);
+    builder.finish()
+}
+
+/// As white as paper.
+const WHITE: [f32; 3] = [0.8; 3];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,7 +80,7 @@ mod tests {
         assert_eq!(cube().triangles.len(), 12);
         let ball = sphere(4);
         assert_eq!(ball.triangles.len(), 20 * 256);
-        for ball in [ball, globe()] {
+        for ball in [ball, globe(), super::ball()] {
             assert!((volume(&ball) - 4.0 / 3.0 * std::f64::consts::PI).abs() < 0.02);
         }
     }

@@ -1,4 +1,4 @@
-use super::{Builder, SIDE_COLORS};
+use super::{Builder, SIDE_COLORS, WHITE};
 use crate::scene::{Mesh, Paint};
 use glam::{DVec2, DVec3};
 
@@ -39,6 +39,18 @@ pub fn sphere(levels: u32) -> Mesh {
         builder.triangle(triangle, Paint::CLAY);
     }
     builder.finish()
+}
+
+/// A white sphere of radius 1 with the normals of a true one.
+pub fn ball() -> Mesh {
+    let mut mesh = sphere(4);
+    // Few digits, as the file has.
+    for coordinates in [&mut mesh.x, &mut mesh.y, &mut mesh.z] {
+        coordinates.iter_mut().for_each(|c| *c = (1e6 * *c).round() / 1e6);
+    }
+    mesh.paint = Paint::Faces(vec![WHITE; mesh.triangles.len()]);
+    mesh.normals = (0..mesh.vertex_count() as u32).map(|v| mesh.vertex(v).as_vec3().to_array()).collect();
+    mesh
 }
 
 /// A sphere of radius 1 in a chequer of 16 by 8 fields along longitude and latitude (around z). The quarter

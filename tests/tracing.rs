@@ -1,0 +1,385 @@
+//! Traced light against closed forms: shadows to a millionth of a radian, furnaces, mirrors in motion, luminous bodies as
+//! lamps, light from everywhere.
+
+mod common;
+#[path = "common/scene_json.rs"]
+mod scene_json;
+
+use common::{cases, reference, vec3};
+use glam::{DAffine3, DQuat, DVec2, DVec3};
+use serde_json::Value;
+use terrell::color::Coloring;
+use terrell::film::Film;
+use terrell::geodesic::{Celerity, Event};
+use terrell::plan::Method;
+use terrell::relativity::Motion;
+use terrell::render::{Options, Report, render};
+use terrell::scene::{
+    Aim, Body, Gloss, Light, LightKind, Material, Mesh, Paint, Scene, Surface, View, parse_scene, shapes,
+};
+use terrell::spectrum::{Shape, Spectrum, luminance};
+use terrell::trace::Paths;
+
+fn traced(scene: &Scene, coloring: Coloring, samples: u32, bounces: u32) -> (Film, Report) {
+    let paths = Paths { bounces, seed: 7 };
+    let options = Options { method: Method::Trace, coloring, samples, paths, ..Options::default() };
+    render(scene, &scene.camera().unwrap(), &options, |_| ()).unwrap()
+}
+
+/// Around a corner of a shadow, as large a part of every circle is lit, however small: the reference counted it at 2·10⁻⁴
+/// rad, and here it is counted at 10⁻⁶, where a corner that is off by that would have all of it, none, or half.
+#[test]
+fn shadow_corners() {
+    let cases = cases();
+    let mut corners_seen = 0;
+    for row in cases["shadow_corners"]["rows"].as_array().unwrap() {
+        let name = row["scene"].as_str().unwrap();
+        let json: Value = serde_json::from_str(
+            &std::fs::read_to_string(reference(&format!("scenes/{name}.json"))).unwrap(),
+        )
+        .unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = scene_json::write_scene(&json, folder.path()).unwrap();
+        let scene = parse_scene(&std::fs::read_to_string(&path).unwrap(), &path).unwrap();
+        for corner in row["corners"].as_array().unwrap() {
+            if corner["visible_shadow_corner"] != true {
+                continue;
+            }
+            let mut scene = scene.clone();
+            scene.view.aim = Aim::Forward(vec3(&corner["n"]));
+            let side = 96;
+            scene.view.size = [side; 2];
+            // The circle is 40 pixels wide.
+            scene.view.fov_deg = Some((1e-6 * f64::from(side) / 40.0).to_degrees());
+            let (film, _) = traced(&scene, Coloring::Flat, 1, 0);
+            let count = 960;
+            let lit = (0..count)
+                .filter(|i| {
+                    let angle = std::f64::consts::TAU * f64::from(*i) / f64::from(count);
+                    let at = DVec2::splat(48.0) + 40.0 * DVec2::from_angle(angle);
+                    film.color[at.y as usize * side as usize + at.x as usize][0] > 0.0
+                })
+                .count();
+            let fraction = lit as f64 / f64::from(count);
+            let expected = corner["lit_fraction_nearby"].as_f64().unwrap();
+            // Edges are counted to one in 48 there, and to a pixel of 251 around here; there may be two.
+            assert!((fraction - expected).abs() < 2.0 / 48.0, "{name} {corner}: {fraction}");
+            corners_seen += 1;
+        }
+    }
+    assert!(corners_seen >= 6, "{corners_seen}");
+}
+
+fn material(color: [f32; 3], emission: [f32; 3], gloss: Gloss) -> Material {
+    Material { base_color: color, emission, surface: Surface::Lit, gloss, ..Material::default() }
+}
+
+fn of(mut mesh: Mesh, material: Material) -> Mesh {
+    mesh.paint = Paint::Uniform([1.0; 3]);
+    mesh.clay = false;
+    mesh.material = Vec::new();
+    mesh.materials = vec![material];
+    mesh
+}
+
+fn moving(beta: DVec3, origin: Event<terrell::geodesic::World>) -> Motion {
+    Motion { celerity: Celerity::from_beta(beta).unwrap(), origin }
+}
+
+/// A picture's mean of what is seen over what is expected there, and how uncertain it is.
+fn mean_ratio(film: &Film, expected: impl Fn(usize) -> f64) -> (f64, f64) {
+    let ratios: Vec<f64> = (0..film.body.len())
+        .filter(|&i| film.body[i] >= 0)
+        .map(|i| f64::from(luminance(film.color[i])) / expected(i))
+        .collect();
+    let n = ratios.len() as f64;
+    assert!(n > 100.0, "{n}");
+    let mean = ratios.iter().sum::<f64>() / n;
+    let variance = ratios.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    (mean, (variance / n).sqrt())
+}
+
+/// Within four standard deviations; one picture in 16 000 would fail by chance, and the seed is fixed.
+fn agrees((mean, uncertain): (f64, f64), what: &str) {
+    println!("{what}: {mean:.5} ± {uncertain:.5}");
+    assert!((mean - 1.0).abs() < 4.0 * uncertain + 1e-6, "{what}: {mean} ± {uncertain}");
+    assert!(uncertain < 0.02, "{what}: {uncertain}");
+}
+
+/// Within a closed box whose walls shine and reflect, light is everywhere the same: 1 + ρ + ρ² + … of what they give off. Seen
+/// from a camera in motion in it, it goes with the power of D that is counted.
+#[test]
+fn white_furnace() {
+    const RHO: f64 = 0.5;
+    for (coloring, power) in [(Coloring::Geometry, 0), (Coloring::Flat, 3), (Coloring::Bolometric, 4)] {
+        for beta in [0.0, 0.8] {
+            for bounces in [1, 5] {
+                let walls = of(
+                    shapes::cube().placed(&DAffine3::from_scale(DVec3::new(4.0, 3.0, 2.0))),
+                    material([RHO as f32; 3], [1.0; 3], Gloss::default()),
+                );
+                let motion = moving(DVec3::new(beta, 0.0, 0.1 * beta), Event::origin());
+                let view = View { size: [96, 72], fov_deg: Some(100.0), ..View::default() };
+                let scene = Scene::new("furnace", vec![Body::new("walls", walls, motion)], view);
+                // One sample, at the pixel's centre, where the film's Doppler factor is.
+                let (film, _) = traced(&scene, coloring, 1, bounces);
+                let whole = (1.0 - RHO.powi(bounces as i32 + 1)) / (1.0 - RHO);
+                let seen = mean_ratio(&film, |i| whole * f64::from(film.doppler[i]).powi(power));
+                agrees(seen, &format!("{coloring} at {beta}, {bounces} reflections"));
+            }
+        }
+    }
+}
+
+/// A matt plate in motion within a luminous box at rest is lit as by light from everywhere, whose sums over the sky are tested
+/// elsewhere: spectra too.
+#[test]
+fn light_of_a_box_is_light_from_everywhere() {
+    for coloring in [Coloring::Geometry, Coloring::Flat, Coloring::Bolometric, Coloring::Spectral] {
+        for beta in [DVec3::ZERO, DVec3::new(0.6, 0.0, 0.0), DVec3::new(0.0, -0.4, 0.5)] {
+            let plate = of(
+                shapes::plate().placed(&DAffine3::from_rotation_translation(
+                    DQuat::from_rotation_x(1.2),
+                    DVec3::new(0.0, 0.0, 0.0),
+                )),
+                material([0.9, 0.6, 0.3], [0.0; 3], Gloss::default()),
+            );
+            let plate = Body::new("plate", plate, moving(beta, Event::at(-5.0, DVec3::new(0.0, 5.0, 0.0))));
+            let spectrum = Spectrum::of(Shape::BlackBody { kelvin: 5000.0 });
+            let view = View { size: [24, 18], fov_deg: Some(4.0), ..View::default() };
+            let mut scene = Scene::new("bath", vec![plate], view);
+            scene.lights.push(Light {
+                name: "everywhere".into(),
+                kind: LightKind::Ambient,
+                color: [1.0; 3],
+                spectrum: spectrum.clone(),
+                strength: 1.0,
+                motion: Motion::at_rest(DVec3::ZERO),
+            });
+            let (direct, _) = traced(&scene, coloring, 1, 0);
+            // The same light, where rays that leave find it.
+            let (escaped, _) = traced(&scene, coloring, 40, 1);
+            let lit = |film: &Film| {
+                let color = |c: usize| {
+                    let of_plate = film.body.iter().zip(&film.color).filter(|(b, _)| **b == 0);
+                    of_plate.map(|(_, color)| f64::from(color[c])).sum::<f64>()
+                };
+                [color(0), color(1), color(2)]
+            };
+            let expected = lit(&direct);
+            let close = |got: [f64; 3], what: &str| {
+                let whole = expected.iter().copied().fold(0.0, f64::max);
+                println!("{coloring} {beta} {what}: {got:?} {expected:?}");
+                for c in 0..3 {
+                    // Some 4000 paths, each off by less than what it is; tables of sums are good to 3·10⁻⁴.
+                    assert!(
+                        (got[c] - expected[c]).abs() < 0.03 * whole,
+                        "{coloring} {beta} {what}: {got:?} {expected:?}"
+                    );
+                }
+            };
+            close(lit(&escaped), "escaping");
+            scene.lights.clear();
+            let luminous = Material {
+                surface: Surface::Luminous,
+                spectrum,
+                ..material([1.0; 3], [0.0; 3], Gloss::default())
+            };
+            let walls = of(shapes::cube().placed(&DAffine3::from_scale(DVec3::splat(60.0))), luminous);
+            scene.bodies.push(Body::new("walls", walls, Motion::at_rest(DVec3::ZERO)));
+            let (walled, _) = traced(&scene, coloring, 40, 1);
+            close(lit(&walled), "walls");
+        }
+    }
+}
+
+/// A small ball that shines lights a floor as a lamp of its radiance times its cross-section does, in motion, too: a luminous
+/// body is an area light, and its light is beamed and aberrated.
+#[test]
+fn a_small_luminous_ball_is_a_lamp() {
+    const RADIUS: f64 = 0.02;
+    for beta in [DVec3::ZERO, DVec3::new(0.6, 0.0, 0.0), DVec3::new(-0.5, 0.3, 0.4)] {
+        // Without shifts, a lamp in motion lights by its own distance, a body by how large it is seen: not the same.
+        for coloring in [Coloring::Flat, Coloring::Bolometric] {
+            let wide = shapes::plate().placed(&DAffine3::from_scale(DVec3::splat(30.0)));
+            let floor = of(wide, material([0.8; 3], [0.0; 3], Gloss::default()));
+            let floor = Body::new("floor", floor, Motion::at_rest(DVec3::new(0.0, 3.0, -1.0)));
+            let motion = moving(beta, Event::at(-3.0, DVec3::new(0.0, 3.0, 1.0)));
+            let view =
+                View { size: [40, 30], aim: Aim::LookAt(DVec3::new(0.0, 3.0, -1.0)), ..View::default() };
+            let mut scene = Scene::new("lamp", vec![floor], view);
+            let area = std::f64::consts::PI * RADIUS * RADIUS;
+            scene.lights.push(Light {
+                name: "lamp".into(),
+                kind: LightKind::Point { position: DVec3::ZERO },
+                color: [1.0; 3],
+                spectrum: Spectrum::default(),
+                strength: 100.0 * area,
+                motion,
+            });
+            let (expected, _) = traced(&scene, coloring, 1, 0);
+            scene.lights.clear();
+            let ball = shapes::sphere(3).placed(&DAffine3::from_scale(DVec3::splat(RADIUS)));
+            let glow =
+                Material { surface: Surface::Luminous, ..material([100.0; 3], [0.0; 3], Gloss::default()) };
+            scene.bodies.push(Body::new("ball", of(ball, glow), motion));
+            let (film, _) = traced(&scene, coloring, 64, 1);
+            let ratio = {
+                let ratios = |i: usize| f64::from(luminance(expected.color[i]));
+                let mut floor_only = film.clone();
+                for i in 0..film.body.len() {
+                    if film.body[i] != 0 || expected.body[i] != 0 || ratios(i) == 0.0 {
+                        floor_only.body[i] = -1;
+                    }
+                }
+                mean_ratio(&floor_only, ratios)
+            };
+            println!("{coloring} {beta}: {ratio:?}");
+            // The ball of triangles covers 0.4 % less than a true one; (R/d)² is 10⁻⁴.
+            assert!(
+                (ratio.0 - 1.0).abs() < 4.0 * ratio.1 + 0.006 && ratio.1 < 0.01,
+                "{coloring} {beta}: {ratio:?}"
+            );
+        }
+    }
+}
+
+/// In a mirror that recedes along its normal, everything is seen with ((1 − β)/(1 + β)) of its frequency; one that moves in
+/// its own plane shows what one at rest does.
+#[test]
+fn mirrors_in_motion() {
+    let silver = Gloss { reflectance: 0.0, roughness: 0.0, metallic: 1.0 };
+    for (beta, expected) in [
+        (DVec3::ZERO, 1.0),
+        (DVec3::new(0.0, 0.5, 0.0), 1.0 / 3.0),
+        (DVec3::new(0.0, -0.5, 0.0), 3.0),
+        (DVec3::new(0.8, 0.0, 0.0), 1.0),
+    ] {
+        let wide = DAffine3::from_scale_rotation_translation(
+            DVec3::splat(100.0),
+            DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2),
+            DVec3::ZERO,
+        );
+        let mirror = of(shapes::plate().placed(&wide), material([1.0; 3], [0.0; 3], silver));
+        let mirror = Body::new("mirror", mirror, moving(beta, Event::at(-5.0, DVec3::new(0.0, 5.0, 0.0))));
+        let glow = Material { surface: Surface::Luminous, ..material([1.0; 3], [0.0; 3], Gloss::default()) };
+        let wall = of(shapes::plate().placed(&wide), glow);
+        let wall = Body::new("wall", wall, Motion::at_rest(DVec3::new(0.0, -1.0, 0.0)));
+        let view = View { size: [16, 12], fov_deg: Some(0.01), ..View::default() };
+        let scene = Scene::new("mirror", vec![mirror, wall], view);
+        let (film, _) = traced(&scene, Coloring::Flat, 2, 2);
+        for i in 0..film.body.len() {
+            assert_eq!(film.body[i], 0);
+            let seen = f64::from(film.color[i][1]);
+            // A field of 10⁻⁴ rad.
+            assert!((seen / f64::powi(expected, 3) - 1.0).abs() < 1e-4, "{beta}: {seen} {expected}");
+        }
+    }
+}
+
+/// What a plane mirror shows is what would stand behind it: a cube in motion and its mirror image are seen alike, pixel by
+/// pixel.
+#[test]
+fn a_mirror_shows_the_mirror_image() {
+    let silver = Gloss { reflectance: 0.0, roughness: 0.0, metallic: 1.0 };
+    let wide = DAffine3::from_scale(DVec3::splat(30.0));
+    let mirror = of(shapes::plate().placed(&wide), material([1.0; 3], [0.0; 3], silver));
+    let view = View {
+        size: [64, 48],
+        event: Event::at(0.0, DVec3::new(0.0, -6.0, 3.0)),
+        aim: Aim::LookAt(DVec3::new(0.0, 0.0, -1.5)),
+        fov_deg: Some(30.0),
+        ..View::default()
+    };
+    let cube = |sign: f64| {
+        // Its side along z, mirrored.
+        let place = DAffine3::from_scale(DVec3::new(1.0, 1.0, sign));
+        let motion =
+            moving(DVec3::new(0.7, 0.2, sign * 0.3), Event::at(-7.5, DVec3::new(0.0, 0.0, sign * 1.5)));
+        Body::new("cube", shapes::cube().placed(&place), motion)
+    };
+    let luminous = |mut body: Body| {
+        let mut mesh = Mesh::clone(&body.mesh);
+        mesh.materials = vec![Material { surface: Surface::Luminous, ..Material::default() }];
+        body.mesh = mesh.into();
+        body
+    };
+    for coloring in [Coloring::Flat, Coloring::Geometry] {
+        let mirrored = Scene::new(
+            "mirror",
+            vec![Body::new("mirror", mirror.clone(), Motion::at_rest(DVec3::ZERO)), luminous(cube(1.0))],
+            view.clone(),
+        );
+        let direct = Scene::new("direct", vec![luminous(cube(-1.0))], view.clone());
+        let (mirrored, _) = traced(&mirrored, coloring, 1, 1);
+        let (direct, _) = traced(&direct, coloring, 1, 0);
+        let [mut same, mut differ] = [0; 2];
+        for i in 0..direct.body.len() {
+            if mirrored.body[i] != 0 {
+                continue;
+            }
+            let off = (0..3).map(|c| (mirrored.color[i][c] - direct.color[i][c]).abs()).fold(0.0, f32::max);
+            if off < 1e-5 {
+                same += usize::from(direct.body[i] == 0);
+            } else {
+                differ += 1;
+            }
+        }
+        // Those whose line of sight runs in an edge to rounding.
+        assert!(same > 100 && differ <= 1, "{same} {differ}");
+    }
+}
+
+/// A lamp shut up in a box lights nothing outside, and the report tells.
+#[test]
+fn a_lamp_inside_a_body_lights_nothing() {
+    let floor = of(shapes::plate(), material([0.8; 3], [0.0; 3], Gloss::default()));
+    let box_of = of(shapes::cube(), material([0.8; 3], [0.0; 3], Gloss::default()));
+    let view = View {
+        event: Event::at(0.0, DVec3::new(0.0, -5.0, 3.0)),
+        aim: Aim::LookAt(DVec3::ZERO),
+        size: [40, 30],
+        ..View::default()
+    };
+    let mut scene = Scene::new(
+        "shut",
+        vec![
+            Body::new("floor", floor, Motion::at_rest(DVec3::ZERO)),
+            Body::new("box", box_of, Motion::at_rest(DVec3::new(0.0, 0.0, 2.0))),
+        ],
+        view,
+    );
+    scene.lights.push(Light {
+        name: "lamp".into(),
+        kind: LightKind::Point { position: DVec3::new(0.0, 0.0, 2.0) },
+        color: [1.0; 3],
+        spectrum: Spectrum::default(),
+        strength: 100.0,
+        motion: Motion::at_rest(DVec3::ZERO),
+    });
+    let (film, report) = traced(&scene, Coloring::Geometry, 1, 0);
+    assert!(film.covered() > 50 && film.color.iter().all(|c| *c == [0.0; 3]));
+    let count = report.rays.unwrap().count;
+    assert!(count.shadow > 20 && count.blocked == count.shadow, "{count:?}");
+}
+
+/// The same seed gives the same picture on any number of threads; another one gives another.
+#[test]
+fn chance_is_repeatable() {
+    let mut scene = terrell::scene::builtin_scene("box").unwrap().scene();
+    scene.view.size = [40, 24];
+    let options = |seed| Options {
+        method: Method::Trace,
+        samples: 2,
+        paths: Paths { bounces: 2, seed },
+        ..Options::default()
+    };
+    let camera = scene.camera().unwrap();
+    let film = |seed, threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| render(&scene, &camera, &options(seed), |_| ()).unwrap().0)
+    };
+    let one = film(1, 1);
+    assert_eq!(one, film(1, 3));
+    assert_ne!(one, film(2, 2));
+}
