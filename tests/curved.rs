@@ -247,8 +247,8 @@ fn meshes_near_the_hole_are_met_where_brute_force_meets_them() {
 }
 
 /// The nearest of all triangles on a chain of chords.
-fn brute(scene: &Scene, mut ray: impl Ray) -> Option<(f64, usize, usize)> {
-    while let Some(piece) = ray.next() {
+fn brute(scene: &Scene, ray: impl Ray) -> Option<(f64, usize, usize)> {
+    for piece in ray {
         let mut nearest: Option<(f64, usize, usize)> = None;
         for (index, body) in scene.bodies.iter().enumerate() {
             let rest_from_world = body.motion.world_from_rest::<f64>().inverse();

@@ -193,7 +193,7 @@ impl Shooting<'_> {
                 report.rays.map(|rays| rays.count).filter(|count| count.failed() + count.impossible > 0)
             {
                 self.tally.flagged += 1;
-                self.tally.rays = self.tally.rays.add(count);
+                self.tally.rays = self.tally.rays.with(count);
             }
             self.tally.pieces += report.pieces;
             self.tally.mapping += report.subdivision;

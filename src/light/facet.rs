@@ -75,7 +75,7 @@ impl<'a> Facet<'a> {
     /// A point of its plane, the facet's corners being where they are, as it is seen along a line of sight that points away
     /// from the observer.
     pub fn seen_along(&self, at: DVec3, sight: DVec3) -> Point {
-        Point { offset: sight, ..Point::new(sight, self.normal(), self.point(at).normal) }
+        Point::new(sight, self.normal(), self.point(at).normal)
     }
 
     /// The surface's colours at a point of its plane; `sights` gives the line of sight to it, and those one pixel to

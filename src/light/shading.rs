@@ -180,6 +180,8 @@ impl Shading {
                 law: EmissionLaw::default(),
                 gloss: Gloss::default(),
                 strength: sky.spectrum.strength.value() as f32,
+                spectrum: sky.spectrum.clone(),
+                scale: sky.spectrum.scale()?,
                 unshifted: unshifted(&sky.spectrum)?,
                 own: own.transpose()?,
                 reflected: Vec::new(),

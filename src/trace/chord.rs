@@ -108,7 +108,7 @@ impl Goal {
         let off = (way - direction * middle).length_squared();
         let rounding = 1e-12 * way.length();
         let reach = self.tree.radius + margin + rounding;
-        if !(off <= reach * reach) {
+        if off.is_nan() || off > reach * reach {
             return None;
         }
         let half = ((reach * reach - off) / square).sqrt();
@@ -177,7 +177,7 @@ impl Goal {
         let [a, b, c] = leaf.corners;
         let normal = (b - a).cross(c - a);
         let size = normal.length();
-        if !(size > 0.0) {
+        if size.is_nan() || size == 0.0 {
             return None;
         }
         let unit = normal / size;

@@ -148,8 +148,8 @@ impl Tracer {
                 .map_init(Tile::default, |tile, (index, rows)| {
                     tile.draw_band(&job, index as u32 * SIDE, range.clone(), rows)
                 })
-                .reduce(Count::default, Count::add);
-            traced.count = traced.count.add(count);
+                .reduce(Count::default, Count::with);
+            traced.count = traced.count.with(count);
             if follows && 2 * range.end == all {
                 half.clone_from(&film.color);
             }
@@ -173,7 +173,7 @@ impl Tracer {
         (0..camera.lens.height().div_ceil(SIDE))
             .into_par_iter()
             .map_init(Tile::default, |tile, band| tile.cast_band(&job, band * SIDE))
-            .reduce(Count::default, Count::add)
+            .reduce(Count::default, Count::with)
     }
 
     /// Traces what is seen in curved spacetime, whatever its metric, onto a film, which is cleared first; `done` is told how
@@ -213,7 +213,7 @@ impl Tracer {
                 done(finished.fetch_add(rows, Ordering::Relaxed) + rows);
                 count
             })
-            .reduce(Count::default, Count::add);
+            .reduce(Count::default, Count::with);
         Traced { count, noise: None }
     }
 

@@ -63,7 +63,7 @@ pub struct Count {
 impl Count {
     /// Both together.
     #[must_use]
-    pub fn add(mut self, other: Self) -> Self {
+    pub fn with(mut self, other: Self) -> Self {
         self.primary += other.primary;
         self.shadow += other.shadow;
         self.blocked += other.blocked;
@@ -292,7 +292,7 @@ impl Tile {
         for (number, sight) in self.sights.iter().enumerate() {
             if sight.leaf == NONE {
                 if let Some((sky, world_from_observer)) = &job.sky {
-                    sight.see_sky(job, sky, world_from_observer, weight, centre, rows);
+                    sight.see_sky(job, sky, world_from_observer, weight, sample == 0, rows);
                 }
                 continue;
             }
