@@ -1,5 +1,6 @@
 //! Which method a scene needs.
 
+use crate::color::Coloring;
 use crate::light::has_shadows;
 use crate::scene::{Material, Scene};
 
@@ -31,6 +32,10 @@ pub const USUAL_PATHS: u32 = 64;
 
 /// Whether what surfaces throw on each other is what is to be seen: mirrors, or surfaces that reflect where others shine.
 pub fn has_reflections(scene: &Scene) -> bool {
+    if scene.spacetime.is_curved() {
+        // Not followed there.
+        return false;
+    }
     let lights = !scene.lights.is_empty();
     let plain = [Material::default()];
     let materials = || {
@@ -45,9 +50,11 @@ pub fn has_reflections(scene: &Scene) -> bool {
 }
 
 /// The cheapest method that is right for a scene, and why.
-pub fn cheapest(scene: &Scene) -> (Method, &'static str) {
+pub fn cheapest(scene: &Scene, coloring: Coloring) -> (Method, &'static str) {
     if scene.spacetime.is_curved() {
         (Method::Trace, "spacetime is curved")
+    } else if coloring == Coloring::Doppler && scene.sky.is_none() {
+        (Method::Apparent, "the Doppler factor needs no light")
     } else if has_reflections(scene) {
         (Method::Trace, "surfaces light each other")
     } else if has_shadows(scene) {

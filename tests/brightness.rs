@@ -248,19 +248,36 @@ fn what_cannot_be_read_is_named_with_its_line() {
     }
 }
 
-/// Lamps have shadows, which are not drawn: one line says so.
+/// Lamps have shadows: rays are traced, unless something else is asked for; then one line says what is not there.
 #[test]
-fn what_needs_ray_tracing_is_said() {
+fn what_needs_ray_tracing_is_traced() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     let lamp = "[[light]]\nkind = \"point\"\nposition = [0, 0, 3]\nstrength = 9\n";
     let scene = |material: &str| format!("[material.m]\n{material}\n{CUBE}{lamp}");
     std::fs::write(here.join("lit.toml"), scene("color = [1, 1, 1]")).unwrap();
     std::fs::write(here.join("luminous.toml"), scene("surface = \"luminous\"")).unwrap();
-    let lit = good(&["render", "lit.toml", SMALL], here);
-    assert_eq!(lit.lines().filter(|l| l.contains("ray tracing")).count(), 1, "{lit}");
-    assert!(!good(&["render", "luminous.toml", SMALL], here).contains("ray tracing"));
-    assert!(!good(&["render", "lit.toml", SMALL, "--color", "doppler"], here).contains("ray tracing"));
+    let lit = |flags: &[&str]| good(&[&["render", "lit.toml", SMALL], flags].concat(), here);
+    assert!(lit(&[]).contains("ray tracing on the CPU (lights cast shadows)"));
+    for flags in [["--method", "apparent"], ["--raster", "skia"], ["--doppler", "vertex"]] {
+        let told = lit(&flags);
+        assert!(told.contains("apparent shading"), "{told}");
+        assert_eq!(told.lines().filter(|l| l.contains("--method trace")).count(), 1, "{told}");
+    }
+    assert!(lit(&["--color", "doppler"]).contains("apparent shading"));
+    assert!(lit(&["--bounces", "2", "--samples", "4"]).contains("of paths of 2 reflections, noise"));
+    let luminous = good(&["render", "luminous.toml", SMALL], here);
+    assert!(luminous.contains("apparent shading") && !luminous.contains("--method trace"), "{luminous}");
+    for (flags, word) in [
+        (["--method", "trace", "--raster", "skia"], "polygons"),
+        (["--method", "trace", "--doppler", "vertex"], "polygons"),
+        (["--method", "apparent", "--bounces", "3"], "--bounces"),
+        (["--method", "trace", "--bounces", "65"], "65"),
+        (["--method", "trace", "--seed", "-1"], "--seed"),
+    ] {
+        let message = bad(&[&["render", "lit.toml", SMALL], &flags[..]].concat(), here);
+        assert!(message.contains(word), "{message}");
+    }
 }
 
 /// A glTF file's own lamp lights it, at rest and in motion.

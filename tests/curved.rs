@@ -7,6 +7,7 @@ mod program;
 use glam::{DMat3, DVec2, DVec3};
 use program::{bad, good, pixels};
 use std::path::Path;
+use terrell::color::Coloring;
 use terrell::film::{FAILED, Film, HOLE, IMPOSSIBLE, NOTHING, Samples};
 use terrell::geodesic::{Accuracy, Curved, KerrSchild, Ray, Spacetime as _};
 use terrell::plan::{Method, cheapest};
@@ -144,7 +145,7 @@ fn the_sky_of_flat_spacetime_is_aberrated_and_shifted() {
         "[camera]\nforward = [1, 0, 0]\nvelocity = [0.6, 0, 0]\nprojection = \"panorama\"\nsize = [36, 18]\n[sky]\ntexture = \"checker\"\n{AWAY}"
     );
     let scene = scene(&text);
-    assert_eq!(cheapest(&scene), (Method::Trace, "there is a sky"));
+    assert_eq!(cheapest(&scene, Coloring::Spectral), (Method::Trace, "there is a sky"));
     let (film, _) = traced(&scene);
     let lens = scene.camera().unwrap().lens;
     for (i, doppler) in film.doppler.iter().enumerate() {
@@ -205,8 +206,7 @@ fn meshes_near_the_hole_are_met_where_brute_force_meets_them() {
     let camera = scene.camera().unwrap();
     let eye = scene.eye(&camera).unwrap().unwrap();
     let Spacetime::Kerr(hole) = scene.spacetime else { panic!() };
-    let shading =
-        terrell::light::Shading::new(&scene, [&camera.observer], terrell::color::Coloring::Flat).unwrap();
+    let shading = terrell::light::Shading::new(&scene, [&camera.observer], Coloring::Flat).unwrap();
     let tracer = Tracer::new(&scene);
     let trace = |accuracy: Accuracy| {
         let (mut film, space) = (Film::new(0, 0), Curved::new(hole).with(accuracy));
@@ -317,8 +317,7 @@ fn rays_that_fail_are_flagged() {
     ));
     let camera = scene.camera().unwrap();
     let eye = scene.eye(&camera).unwrap().unwrap();
-    let shading =
-        terrell::light::Shading::new(&scene, [&camera.observer], terrell::color::Coloring::Flat).unwrap();
+    let shading = terrell::light::Shading::new(&scene, [&camera.observer], Coloring::Flat).unwrap();
     let hole = KerrSchild::new(1.0, 0.9).unwrap();
     let space = Curved::new(hole).with(Accuracy { steps: 8, ..Accuracy::new(1e-8, 0.05) });
     let mut film = Film::new(0, 0);

@@ -9,7 +9,7 @@ use terrell::measure::{Comparison, Corners, Figures, Mark, Reference};
 use terrell::plan::Method;
 use terrell::render::{Options, Raster, render};
 use terrell::scene::{Camera, Scene, builtin_scenes};
-use terrell::trace::Tracer;
+use terrell::trace::{Look, Paths, Tracer};
 
 const SIZE: [u32; 2] = [320, 180];
 
@@ -40,7 +40,8 @@ impl Traced<'_> {
         let prepared = options.prepare(self.scene, [&self.camera]).unwrap();
         let shading = prepared.shading.seen_by(&self.camera.observer);
         let mut film = Film::new(0, 0);
-        self.tracer.trace(self.scene, &self.camera, &[offset], &shading, &mut film);
+        let look = Look { samples: &[offset], shading: &shading, paths: Paths::default() };
+        self.tracer.trace(self.scene, &self.camera, &look, &mut film, |_, _| ());
         film
     }
 

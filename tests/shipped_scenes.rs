@@ -1,5 +1,6 @@
 //! The scenes that ship show what they say they show.
 
+use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::plan::cheapest;
 use terrell::render::{Options, render};
@@ -11,7 +12,7 @@ fn scene(name: &str) -> Scene {
 
 fn film(mut scene: Scene, size: [u32; 2]) -> Film {
     scene.view.size = size;
-    let options = Options { method: cheapest(&scene).0, ..Options::default() };
+    let options = Options { method: cheapest(&scene, Coloring::Doppler).0, ..Options::default() };
     render(&scene, &scene.camera().unwrap(), &options, |_| ()).unwrap().0
 }
 

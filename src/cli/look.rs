@@ -235,7 +235,7 @@ impl LookFlags {
             (MethodFlag::Trace, None) => (Method::Trace, None),
             (MethodFlag::Auto, None) if self.bounces.is_some_and(|n| n > 0) => (Method::Trace, None),
             (MethodFlag::Auto, None) => {
-                let (method, why) = cheapest(scene);
+                let (method, why) = cheapest(scene, options.coloring);
                 (method, Some(why))
             }
         };
@@ -250,10 +250,8 @@ impl LookFlags {
             return Err("--bounces is for flat spacetime; in curved spacetime surfaces do not light each other, so leave it out".into());
         }
         options.method = method;
-        let usual = if has_reflections(scene) && !scene.spacetime.is_curved() { USUAL_BOUNCES } else { 0 };
-        let bounces = self.bounces.unwrap_or(usual);
         match method {
-            Method::Trace => options.paths = Paths { bounces, seed: self.seed },
+            Method::Trace => self.set_paths(options, scene),
             Method::Apparent if self.bounces.is_some_and(|n| n > 0) => {
                 return Err(
                     "--bounces is about rays; polygons (--method apparent) do not light each other".into()
@@ -261,9 +259,15 @@ impl LookFlags {
             }
             Method::Apparent => {}
         }
+        Ok(why)
+    }
+
+    /// How paths are traced in a scene, and how many.
+    pub fn set_paths(&self, options: &mut Options, scene: &Scene) {
+        let usual = if has_reflections(scene) { USUAL_BOUNCES } else { 0 };
+        options.paths = Paths { bounces: self.bounces.unwrap_or(usual), seed: self.seed };
         let usual = if options.paths.bounces > 0 { USUAL_PATHS } else { 1 };
         options.samples = self.samples.unwrap_or(usual);
-        Ok(why)
     }
 
     /// For what draws by several methods: that none of them is asked for.

@@ -67,8 +67,8 @@ fn draw_all(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
 fn draw(scene: &Builtin) -> Result<Film, Fault> {
     let mut scene = scene.scene();
     scene.view.size = [320, 180];
-    let method = cheapest(&scene).0;
-    // Rays take their time, and much of what they show is averaged over pixels by itself.
+    // Rays where polygons show too little; they take their time, and much of what they show is averaged by itself.
+    let method = cheapest(&scene, Coloring::Doppler).0;
     let samples = if scene.spacetime.is_curved() { 1 } else { 9 };
     // Shapes: some are too dark to be recognised as they are seen.
     let options = Options { samples, coloring: Coloring::Geometry, method, ..Options::default() };

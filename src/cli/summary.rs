@@ -5,7 +5,7 @@ use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::geodesic::{Event, Sense, World};
 use terrell::light::{DopplerAt, Shading, TableInfo, has_shadows};
-use terrell::plan::Method;
+use terrell::plan::{Method, has_reflections};
 use terrell::relativity::ApparentMap;
 use terrell::render::{Options, Raster, Report};
 use terrell::scene::{Body, Camera, Light, Scene, Spacetime, Stance};
@@ -184,8 +184,13 @@ pub fn light_notes(scene: &Scene, options: &Options) -> Vec<String> {
 
 /// As [`light_notes`], where nothing can be traced.
 pub fn shadow_note(scene: &Scene, coloring: Coloring) -> Option<String> {
-    let shadows = coloring != Coloring::Doppler && has_shadows(scene);
-    shadows.then(|| "the lights' shadows are not there".to_owned())
+    if coloring == Coloring::Doppler {
+        None
+    } else if has_reflections(scene) {
+        Some("shadows, and light of surfaces on each other, are not there".to_owned())
+    } else {
+        has_shadows(scene).then(|| "the lights' shadows are not there".to_owned())
+    }
 }
 
 /// What drew it, and why: "apparent shading on the CPU, 12 triangles cut into 96 for 0.25 px".

@@ -23,11 +23,6 @@ impl Builtin {
 
 const SCENES: [Builtin; 12] = [
     Builtin {
-        name: "box",
-        about: "a box lit by a glowing cube that flies through it at 0.8c, and mirrored in a ball: light of bodies on each other",
-        toml: include_str!("../../assets/box.toml"),
-    },
-    Builtin {
         name: "cube",
         about: "a cube passing at 0.9c, seen as it appears abreast: it seems to turn (Fig. 2)",
         toml: include_str!("../../assets/cube.toml"),
@@ -56,6 +51,11 @@ const SCENES: [Builtin; 12] = [
         name: "shadow",
         about: "a cube passing at 0.8c over a floor, under a lamp: its shadow is where it was",
         toml: include_str!("../../assets/shadow.toml"),
+    },
+    Builtin {
+        name: "box",
+        about: "a box lit by a glowing cube that flies through it at 0.8c, and mirrored in a ball: light of bodies on each other",
+        toml: include_str!("../../assets/box.toml"),
     },
     Builtin {
         name: "sphere",

@@ -183,7 +183,7 @@ fn draw(scene: &Scene) {
         tolerance: 1.0,
         most_pieces: 10_000,
         coloring: Coloring::Flat,
-        method: cheapest(scene).0,
+        method: cheapest(scene, Coloring::Doppler).0,
         ..Default::default()
     };
     if let Ok((film, _)) = render(scene, &camera, &options, |_| ()) {

@@ -19,10 +19,11 @@ use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use terrell::color::Coloring;
 use terrell::film::Film;
-use terrell::light::has_shadows;
 use terrell::measure::{Comparison, Faces, Known, Perceived, Reference, flip};
 use terrell::picture::{self, Pending};
+use terrell::plan::{Method, cheapest};
 use terrell::render::Options;
 use terrell::scene::{Camera, Scene, builtin_scenes};
 use terrell::tone::Development;
@@ -52,7 +53,7 @@ pub struct Compare {
     /// Scenes: names, .toml files or meshes
     #[arg(required_unless_present = "all", value_name = "SCENE")]
     scenes: Vec<String>,
-    /// Every scene that ships in which nothing casts shadows
+    /// Every scene that ships in which no surface is lit
     #[arg(long, conflicts_with = "scenes")]
     all: bool,
     /// Folder to write to; made if it is not there [default: the scene's name_compare; of several, compare]
@@ -176,6 +177,8 @@ impl Compare {
         let (mut files, mut all) = (Vec::new(), Vec::new());
         for ((scene, camera), name) in scenes.iter_mut().zip(&cameras).zip(&names) {
             let folder = if names.len() == 1 { output.clone() } else { output.join(name) };
+            let mut options = options.clone();
+            self.look.set_paths(&mut options, scene);
             let (compared, made) = self.compare(scene, camera, &options, reference.as_ref(), || {
                 folders.make(&output)?;
                 folders.make(&folder).map(|()| folder.clone())
@@ -197,7 +200,9 @@ impl Compare {
 
     /// The scenes, with what the flags say over what they say themselves.
     fn open(&self, reference: Option<&Reference>) -> Result<Vec<Scene>, Fault> {
-        let shipped = builtin_scenes().iter().filter(|scene| self.all && !has_shadows(&scene.scene()));
+        let shipped = builtin_scenes()
+            .iter()
+            .filter(|scene| self.all && cheapest(&scene.scene(), Coloring::Spectral).0 == Method::Apparent);
         let names = self.scenes.iter().map(String::as_str).chain(shipped.map(|scene| scene.name));
         let names: Vec<&str> = names.collect();
         if reference.is_some() && names.len() != 1 {
