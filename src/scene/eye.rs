@@ -164,7 +164,11 @@ fn remedy(hole: &KerrSchild, observer: &Tetrad) -> String {
     let can = all.iter().filter(|(_, stance)| four_velocity(hole, *stance, &resting).is_ok());
     let names: Vec<_> = can.map(|(name, _)| format!("\"{name}\"")).collect();
     match names.len() {
-        0 => format!("; the horizon is at r = {}", hole.horizon()),
+        0 => format!(
+            "; the horizon reaches {:.4} from the axis, and {:.4} along it",
+            hole.horizon().hypot(hole.spin()),
+            hole.horizon()
+        ),
         _ => format!("; there the observer can be {}", names.join(", ")),
     }
 }
