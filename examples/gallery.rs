@@ -7,7 +7,8 @@
 use std::path::Path;
 use std::process::{Command, exit};
 
-/// File in docs/images/ and the words after `terrell`; SAMPLE is a file of the example `textured_sample`.
+/// File in docs/images/ and the words after `terrell`; SAMPLE is a file of the example `textured_sample`, STARS the scene
+/// `blackhole` before another sky.
 const PICTURES: &[(&str, &[&str])] = &[
     // Shapes: without shift and beaming.
     ("cube_rest.png", &["render", "cube", "--beta=0", SHAPE, SIZE, SMOOTH]),
@@ -45,6 +46,9 @@ const PICTURES: &[(&str, &[&str])] = &[
         "gate.gif",
         &["animate", "gate", "--beside-standard", SHAPE, SMALL, "--frames=60", "--fps=20", "--samples=4"],
     ),
+    // Curved spacetime.
+    ("blackhole.png", &["render", "blackhole", SIZE, "--samples=4"]),
+    ("blackhole_stars.png", &["render", "STARS", SIZE, "--samples=4"]),
     // Light.
     ("cube.png", &["render", "cube", SIZE, SMOOTH]),
     ("hot_rest.png", &["render", "hot", "--beta=0", SIZE, SMOOTH, "--legend"]),
@@ -92,13 +96,25 @@ fn main() {
     let sample = std::env::temp_dir().join("terrell_sample.glb");
     let sample = sample.to_string_lossy();
     run("--example", "textured_sample", &[&sample]);
+    let stars = std::env::temp_dir().join("terrell_blackhole_stars.toml");
+    let scene = include_str!("../assets/blackhole.toml").replace("\"checker\"", "\"stars\"");
+    if let Err(e) = std::fs::write(&stars, scene) {
+        eprintln!("{}: {e}", stars.display());
+        exit(1);
+    }
+    let stars = stars.to_string_lossy();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/images");
     for (file, words) in PICTURES {
         let output = folder.join(file);
         let output = output.to_string_lossy();
-        let words = words.iter().map(|word| if *word == "SAMPLE" { &*sample } else { *word });
+        let words = words.iter().map(|word| match *word {
+            "SAMPLE" => &*sample,
+            "STARS" => &*stars,
+            word => word,
+        });
         run("--bin", "terrell", &words.chain(["-o", &*output]).collect::<Vec<_>>());
     }
     // Nothing is left but the pictures.
     let _ = std::fs::remove_file(&*sample);
+    let _ = std::fs::remove_file(&*stars);
 }

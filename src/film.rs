@@ -11,11 +11,12 @@ pub struct Film {
     pub height: u32,
     /// Linear sRGB radiance, averaged over the samples of the pixel.
     pub color: Vec<[f32; 3]>,
-    /// Apparent distance r at the pixel's centre; 0 where nothing is seen.
+    /// Apparent distance r at the pixel's centre; 0 where no body is seen. In curved spacetime the affine parameter in
+    /// units in which the observer sees frequency 1.
     pub distance: Vec<f32>,
     /// Doppler factor at the pixel's centre; 0 where nothing is seen.
     pub doppler: Vec<f32>,
-    /// Index of the body in the scene; [`NOTHING`] where nothing is seen.
+    /// Index of the body in the scene; [`NOTHING`], [`HOLE`], [`FAILED`] or [`IMPOSSIBLE`] where there is none.
     pub body: Vec<i32>,
     /// Index of the triangle in the body's file; [`NOTHING`] where nothing is seen.
     pub face: Vec<i32>,
@@ -62,8 +63,21 @@ pub(crate) struct Rows<'a> {
     pub face: &'a mut [i32],
 }
 
-/// Body and face of a pixel where nothing is seen.
+/// Body and face of a pixel where nothing is seen, or the sky.
 pub const NOTHING: i32 = -1;
+
+/// Body of a pixel that sees a black hole; its face is [`NOTHING`].
+pub const HOLE: i32 = -2;
+
+/// Body of a pixel whose ray could not be followed, so that what it sees is not known; its face is [`NOTHING`].
+pub const FAILED: i32 = -3;
+
+/// Body of a pixel that sees what cannot be: a surface that would move faster than light where it is. Its face is
+/// [`NOTHING`].
+pub const IMPOSSIBLE: i32 = -4;
+
+/// Colour of pixels that have no right one, conspicuous: magenta.
+pub const FLAGGED: [f32; 3] = [1.0, 0.0, 1.0];
 
 impl Film {
     /// A film on which nothing is seen.
@@ -108,8 +122,14 @@ impl Film {
             .map(|((((color, distance), doppler), body), face)| Rows { color, distance, doppler, body, face })
     }
 
-    /// How many pixels see something.
+    /// How many pixels see a body.
     pub fn covered(&self) -> usize {
-        self.body.iter().filter(|&&b| b != NOTHING).count()
+        self.body.iter().filter(|&&b| b >= 0).count()
+    }
+
+    /// Whether a pixel has no right colour.
+    #[inline]
+    pub fn is_flagged(&self, pixel: usize) -> bool {
+        matches!(self.body[pixel], FAILED | IMPOSSIBLE)
     }
 }

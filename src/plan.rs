@@ -8,10 +8,10 @@ use crate::scene::{Material, Scene};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
     /// Bodies are moved to where they are seen, cut, and drawn as polygons (Nollert et al. 2000, section 2): fast. There
-    /// are no shadows.
+    /// are no shadows, and no sky.
     #[default]
     Apparent,
-    /// Rays are followed back in time ([`crate::trace`]): with shadows.
+    /// Rays are followed back in time ([`crate::trace`]): with shadows, before the sky, in curved spacetime too.
     Trace,
 }
 
@@ -32,6 +32,10 @@ pub const USUAL_PATHS: u32 = 64;
 
 /// Whether what surfaces throw on each other is what is to be seen: mirrors, or surfaces that reflect where others shine.
 pub fn has_reflections(scene: &Scene) -> bool {
+    if scene.spacetime.is_curved() {
+        // Not followed there.
+        return false;
+    }
     let lights = !scene.lights.is_empty();
     let plain = [Material::default()];
     let materials = || {
@@ -47,12 +51,16 @@ pub fn has_reflections(scene: &Scene) -> bool {
 
 /// The cheapest method that is right for a scene, and why.
 pub fn cheapest(scene: &Scene, coloring: Coloring) -> (Method, &'static str) {
-    if coloring == Coloring::Doppler {
+    if scene.spacetime.is_curved() {
+        (Method::Trace, "spacetime is curved")
+    } else if coloring == Coloring::Doppler && scene.sky.is_none() {
         (Method::Apparent, "the Doppler factor needs no light")
     } else if has_reflections(scene) {
         (Method::Trace, "surfaces light each other")
     } else if has_shadows(scene) {
         (Method::Trace, "lights cast shadows")
+    } else if scene.sky.is_some() {
+        (Method::Trace, "there is a sky")
     } else {
         (Method::Apparent, "nothing casts shadows")
     }

@@ -7,10 +7,11 @@ use crate::light::{DopplerAt, Shading, ShadingError};
 use crate::plan::Method;
 use crate::raster::{Drawable, TooManyToPaint, paint, shade_again};
 use crate::relativity::ApparentMap;
-use crate::scene::{Camera, Mesh, Scene};
+use crate::scene::{Camera, EyeError, Mesh, Scene, Spacetime, SpacetimeError};
 use crate::trace::{Look, Paths, Traced, Tracer};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use terrell_geodesic::{Accuracy, Curved, KerrSchild};
 
 /// How to draw.
 #[derive(Clone, Debug)]
@@ -56,6 +57,15 @@ pub enum RenderError {
     /// A spectrum that cannot be.
     #[error(transparent)]
     Shading(#[from] ShadingError),
+    /// A camera that cannot be there.
+    #[error(transparent)]
+    Eye(#[from] EyeError),
+    /// Something that there is not in the scene's spacetime.
+    #[error(transparent)]
+    Spacetime(#[from] SpacetimeError),
+    /// Polygons in curved spacetime.
+    #[error("in curved spacetime only rays show what is seen; ask for the method trace, or auto")]
+    OnlyRays,
 }
 
 impl Default for Options {
@@ -78,12 +88,16 @@ impl Options {
     /// What is the same for all of these cameras' pictures of a scene: to be made once.
     ///
     /// # Errors
-    /// If a spectrum cannot be.
+    /// If a spectrum cannot be, or the scene's spacetime has no such scene or is not drawn so.
     pub fn prepare<'a>(
         &self,
         scene: &Scene,
         cameras: impl IntoIterator<Item = &'a Camera>,
-    ) -> Result<Prepared, ShadingError> {
+    ) -> Result<Prepared, RenderError> {
+        scene.check_spacetime()?;
+        if scene.spacetime.is_curved() && self.method != Method::Trace {
+            return Err(RenderError::OnlyRays);
+        }
         let observers = cameras.into_iter().map(|c| &c.observer);
         let shading = Shading::new(scene, observers, self.coloring)?.with_doppler_at(self.doppler_at);
         let tracer = (self.method == Method::Trace).then(|| Tracer::new(scene));
@@ -122,6 +136,13 @@ pub enum Step {
     Cutting(usize),
     /// Everything is drawn.
     Drawing,
+    /// Of rows that take long, so many are drawn.
+    Rows {
+        /// Rows that are.
+        done: u32,
+        /// All rows.
+        of: u32,
+    },
     /// Rays are traced, for so many samples of a pixel so far.
     Tracing {
         /// How many are done.
@@ -131,16 +152,26 @@ pub enum Step {
     },
 }
 
+/// The spacetime around a hole, followed as pictures need it: rays to 10⁻⁸ (see [`Accuracy`]), in chords as long as they can
+/// be without much to look for around them.
+pub fn around(hole: KerrSchild) -> Curved<KerrSchild> {
+    Curved::new(hole).with(Accuracy::new(1e-8, SAGITTA * hole.mass()))
+}
+
+/// ε of chords, in masses: where rays are cheapest; hits are exact whatever it is.
+const SAGITTA: f64 = 0.05;
+
 /// Draws a scene: by apparent shading, every body moved to where the camera sees it (Nollert et al. 2000, Eq. 1), cut
 /// until flat triangles show it to the pixel, and drawn by a z-buffer or a painter; or by tracing rays.
 ///
 /// # Errors
-/// If the bodies would be cut into more pieces than allowed, or than can be painted, or a spectrum cannot be.
+/// If the bodies would be cut into more pieces than allowed, or than can be painted, or a spectrum cannot be; in curved
+/// spacetime, if nobody can be where the camera is, or something in the scene cannot be.
 pub fn render(
     scene: &Scene,
     camera: &Camera,
     options: &Options,
-    step: impl FnMut(Step),
+    step: impl FnMut(Step) + Send,
 ) -> Result<(Film, Report), RenderError> {
     let mut film = Film::new(0, 0);
     let prepared = options.prepare(scene, [camera])?;
@@ -158,7 +189,7 @@ pub fn render_again(
     options: &Options,
     prepared: &Prepared,
     film: &mut Film,
-    mut step: impl FnMut(Step),
+    mut step: impl FnMut(Step) + Send,
 ) -> Result<Report, RenderError> {
     let samples = Samples::new(options.samples);
     let shading = &prepared.shading.seen_by(&camera.observer);
@@ -166,7 +197,16 @@ pub fn render_again(
     if let Some(tracer) = &prepared.tracer {
         let start = Instant::now();
         let look = Look { samples: samples.offsets(), shading, paths: options.paths };
-        let rays = tracer.trace(scene, camera, &look, film, |done, of| step(Step::Tracing { done, of }));
+        let rays = if let (Spacetime::Kerr(hole), Some(eye)) = (&scene.spacetime, scene.eye(camera)?) {
+            let space = around(*hole);
+            let step = Mutex::new(step);
+            let of = camera.lens.height();
+            // A panic of another thread is told by that thread.
+            let done = |done| step.lock().unwrap_or_else(PoisonError::into_inner)(Step::Rows { done, of });
+            tracer.trace_curved(scene, &space, &eye, &camera.lens, &look, film, done)
+        } else {
+            tracer.trace(scene, camera, &look, film, |done, of| step(Step::Tracing { done, of }))
+        };
         let (pieces, subdivision) = (triangles, Duration::ZERO);
         return Ok(Report { triangles, pieces, subdivision, shading: start.elapsed(), rays: Some(rays) });
     }

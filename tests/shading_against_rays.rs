@@ -119,6 +119,7 @@ fn random_scene(random: &mut Random, fastest: f64) -> Scene {
     let view = View {
         event: Event::at(random.unit(), random.point(2.0)),
         celerity: celerity(random),
+        stance: terrell::scene::Stance::Moving,
         aim: Aim::Forward(random.point(1.0)),
         up: random.point(1.0),
         projection,

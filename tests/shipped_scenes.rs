@@ -1,6 +1,8 @@
 //! The scenes that ship show what they say they show.
 
+use terrell::color::Coloring;
 use terrell::film::Film;
+use terrell::plan::cheapest;
 use terrell::render::{Options, render};
 use terrell::scene::{Scene, builtin_scenes};
 
@@ -10,7 +12,8 @@ fn scene(name: &str) -> Scene {
 
 fn film(mut scene: Scene, size: [u32; 2]) -> Film {
     scene.view.size = size;
-    render(&scene, &scene.camera().unwrap(), &Options::default(), |_| ()).unwrap().0
+    let options = Options { method: cheapest(&scene, Coloring::Doppler).0, ..Options::default() };
+    render(&scene, &scene.camera().unwrap(), &options, |_| ()).unwrap().0
 }
 
 #[test]

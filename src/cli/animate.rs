@@ -159,8 +159,22 @@ impl Animate {
         let mut options = options.clone();
         self.look.choose(&mut options, &scene)?;
         scene.notes.extend(summary::light_notes(&scene, &options));
+        scene.notes.extend(scene.horizon_notes());
         let animation = self.animation(&scene)?;
+        if scene.spacetime.is_curved() {
+            if self.beside_standard {
+                let why = "--beside-standard compares with slow motion, which a black hole does not have; leave it out";
+                return Err(why.into());
+            }
+            if let Pace::Apparent { .. } = animation.pace {
+                let why = "in curved spacetime frames go by the camera's clock: give --time T0,T1, or time in the scene's [animation]";
+                return Err(why.into());
+            }
+        }
         let cameras = animation.cameras(&scene)?;
+        for camera in &cameras {
+            scene.eye(camera)?;
+        }
         let panel = |mut scene: Scene, cameras: Vec<Camera>| -> Result<Panel, Fault> {
             let overlay = self.drawing.overlay(&scene)?;
             let prepared = options.prepare(&scene, &cameras)?;
@@ -286,13 +300,14 @@ impl Done<'_> {
             ),
         };
         let mut line = format!(
-            "{}: {} of {}x{} {}, {} a second, flat spacetime, {bodies}: {} on the CPU, {}{}\n",
+            "{}: {} of {}x{} {}, {} a second, {}, {bodies}: {} on the CPU, {}{}\n",
             self.output.display(),
             frames(tally.drawn),
             self.size[0],
             self.size[1],
             panel.cameras[0].lens.projection(),
             take.animation.fps,
+            panel.scene.spacetime,
             match take.options.method {
                 Method::Apparent => "apparent shading",
                 Method::Trace => "ray tracing",
@@ -315,6 +330,10 @@ impl Done<'_> {
         }
         if tally.surplus > 0 {
             note(format!("{} of a longer film taken away", frames(tally.surplus)));
+        }
+        if tally.flagged > 0 {
+            note(format!("magenta in {}", frames(tally.flagged)));
+            summary::ray_notes(&tally.rays).into_iter().for_each(&mut note);
         }
         let scenes = self.takes.iter().flat_map(|t| t.panels.last()).flat_map(|p| &p.scene.notes);
         scenes.chain(&self.notes).for_each(|n| note(n.clone()));
@@ -348,7 +367,7 @@ impl Done<'_> {
         json!({
             "terrell": env!("CARGO_PKG_VERSION"),
             "output": self.output,
-            "spacetime": "flat",
+            "spacetime": summary::spacetime(&self.takes[0].panels[0].scene),
             "raster": summary::raster(self.options.raster),
             "threads": rayon::current_num_threads(),
             "color": self.options.coloring.to_string(),

@@ -46,6 +46,12 @@ enum EdgesFlag {
 impl DrawingFlags {
     /// What to draw on pictures of a scene; none if nothing.
     pub fn overlay(&self, scene: &Scene) -> Result<Option<Overlay>, Fault> {
+        let flat =
+            [(self.edges.is_some(), "--edges"), (self.axes, "--axes"), (self.scale_bar, "--scale-bar")];
+        if let Some((_, flag)) = flat.iter().find(|(asked, _)| *asked && scene.spacetime.is_curved()) {
+            let why = "is drawn where flat spacetime has it; leave it out in curved spacetime";
+            return Err(format!("{flag} {why}").into());
+        }
         let caption = (!self.caption.is_empty()).then(|| Caption::parse(&self.caption.join("\n")));
         let edges = self.edges.map(|which| match which {
             EdgesFlag::Sharp => Edges::Sharp,

@@ -150,9 +150,9 @@ impl DevelopFlags {
 enum MethodFlag {
     /// The cheapest that is right for the scene
     Auto,
-    /// Polygons, moved to where they are seen: without shadows
+    /// Polygons, moved to where they are seen: without shadows, in flat spacetime
     Apparent,
-    /// Rays, followed back in time: with shadows
+    /// Rays, followed back in time: with shadows, before the sky, past black holes
     Trace,
 }
 
@@ -239,6 +239,16 @@ impl LookFlags {
                 (method, Some(why))
             }
         };
+        if scene.spacetime.is_curved() && method == Method::Apparent {
+            let flag = of_polygons.unwrap_or("--method apparent");
+            let why =
+                "is for flat spacetime; in curved spacetime only rays show what is seen, so leave it out";
+            return Err(format!("{flag} {why}").into());
+        }
+        scene.check_spacetime()?;
+        if scene.spacetime.is_curved() && self.bounces.is_some_and(|n| n > 0) {
+            return Err("--bounces is for flat spacetime; in curved spacetime surfaces do not light each other, so leave it out".into());
+        }
         options.method = method;
         match method {
             Method::Trace => self.set_paths(options, scene),

@@ -57,6 +57,8 @@ impl Render {
         let mut scene = self.scene()?;
         let why = self.look.choose(&mut options, &scene)?;
         let camera = scene.camera()?;
+        // Better known before the work than after.
+        scene.eye(&camera)?;
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
         Format::of(&output)?;
         check_target(&output)?;
@@ -67,6 +69,7 @@ impl Render {
         let mut progress = Progress::new(self.report.quiet);
         let coloring = options.coloring;
         scene.notes.extend(summary::light_notes(&scene, &options));
+        scene.notes.extend(scene.horizon_notes());
         let mut film = Film::new(0, 0);
         let prepared = options.prepare(&scene, [&camera])?;
         let tables = start.elapsed() - read;
@@ -143,6 +146,7 @@ impl Progress {
                 scene.bodies.len()
             ),
             Step::Drawing => "drawing".to_owned(),
+            Step::Rows { done, of } => format!("drawing: {done} of {of} rows"),
             Step::Tracing { of: 1, .. } => "tracing".to_owned(),
             Step::Tracing { done, of } => format!("tracing, {done} of {of} samples"),
         };
@@ -182,11 +186,12 @@ impl Done<'_> {
     fn line(&self) -> String {
         let bodies = summary::bodies_in_words(&summary::gammas(self.scene, self.camera));
         let mut line = format!(
-            "{}: {}x{} {}, flat spacetime, {bodies}: {}, {}, {:.0} ms\n",
+            "{}: {}x{} {}, {}, {bodies}: {}, {}, {:.0} ms\n",
             self.output.display(),
             self.film.width,
             self.film.height,
             self.camera.lens.projection(),
+            self.scene.spacetime,
             summary::method_in_words(self.options, &self.report, self.why),
             match Format::of(&self.output) {
                 // The light as it is.
@@ -195,12 +200,17 @@ impl Done<'_> {
             },
             1e3 * self.times.whole.as_secs_f64()
         );
-        if self.film.covered() == 0 {
+        if self.film.covered() == 0 && self.scene.sky.is_none() {
             line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
         }
         let brightest = summary::brightest(self.film);
-        if self.film.covered() > 0 && summary::is_dark(brightest, &self.development) {
+        if (self.film.covered() > 0 || self.scene.sky.is_some())
+            && summary::is_dark(brightest, &self.development)
+        {
             line.push_str(&format!("note: {}\n", summary::dark_note(self.options.coloring)));
+        }
+        for note in self.report.rays.iter().flat_map(|rays| summary::ray_notes(&rays.count)) {
+            line.push_str(&format!("note: {note}\n"));
         }
         for note in &self.scene.notes {
             line.push_str(&format!("note: {note}\n"));
@@ -215,7 +225,7 @@ impl Done<'_> {
             "terrell": env!("CARGO_PKG_VERSION"),
             "scene": scene.name,
             "output": output,
-            "spacetime": "flat",
+            "spacetime": summary::spacetime(scene),
             "method": options.method.to_string(),
             "method_because": why,
             "raster": summary::raster(options.raster),
@@ -228,11 +238,13 @@ impl Done<'_> {
             "tolerance_px": options.tolerance,
             "samples": options.samples,
             "camera": summary::camera(camera),
+            "observer": summary::stance(scene),
             "bodies": summary::bodies(scene, camera),
             "lights": summary::lights(scene),
+            "sky": scene.sky.as_ref().map(|sky| sky.texture.describe()),
             "triangles": report.triangles,
             "pieces": report.pieces,
-            "rays": report.rays.map(summary::rays),
+            "rays": report.rays.map(|rays| summary::rays(rays, scene)),
             "pixels_covered": film.covered(),
             "doppler_range": doppler.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
             "seconds": {

@@ -8,6 +8,7 @@ use terrell::picture::{self, FrameFolder, Movie, MovieFormat};
 use terrell::render::{Options, Prepared, render_again};
 use terrell::scene::{Animation, Camera, Scene};
 use terrell::tone::Development;
+use terrell::trace::Count;
 
 /// Columns between pictures that stand side by side, and their grey.
 const GAP: u32 = 2;
@@ -54,6 +55,10 @@ pub struct Tally {
     pub pieces: usize,
     /// Pictures that show something, all of it black.
     pub dark: usize,
+    /// Pictures with rays that have no right colour.
+    pub flagged: usize,
+    /// Of these, all rays.
+    pub rays: Count,
     pub mapping: Duration,
     pub shading: Duration,
     pub coloring: Duration,
@@ -184,6 +189,12 @@ impl Shooting<'_> {
         for (panel, film) in take.panels.iter().zip(films) {
             let Panel { scene, cameras, overlay, prepared, development } = panel;
             let report = render_again(scene, &cameras[i], &take.options, prepared, film, |_| ())?;
+            if let Some(count) =
+                report.rays.map(|rays| rays.count).filter(|count| count.failed() + count.impossible > 0)
+            {
+                self.tally.flagged += 1;
+                self.tally.rays = self.tally.rays.with(count);
+            }
             self.tally.pieces += report.pieces;
             self.tally.mapping += report.subdivision;
             self.tally.shading += report.shading;

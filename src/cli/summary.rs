@@ -3,12 +3,12 @@
 use serde_json::{Value, json};
 use terrell::color::Coloring;
 use terrell::film::Film;
-use terrell::geodesic::{Event, World};
+use terrell::geodesic::{Event, Sense, World};
 use terrell::light::{DopplerAt, Shading, TableInfo, has_shadows};
 use terrell::plan::{Method, has_reflections};
 use terrell::relativity::ApparentMap;
 use terrell::render::{Options, Raster, Report};
-use terrell::scene::{Body, Camera, Light, Scene};
+use terrell::scene::{Body, Camera, Light, Scene, Spacetime, Stance};
 use terrell::tone::Development;
 use terrell::trace::{Count, Traced};
 
@@ -30,6 +30,20 @@ pub fn bodies_in_words(gammas: &[f64]) -> String {
 fn event(e: Event<World>) -> Value {
     let p = e.position();
     json!([e.t(), p.x, p.y, p.z])
+}
+
+/// How a camera is there, where that is not its velocity.
+pub fn stance(scene: &Scene) -> Value {
+    match scene.view.stance {
+        Stance::Moving => Value::Null,
+        Stance::Zamo => json!("zamo"),
+        Stance::Circular(Sense::Prograde) => json!("circular"),
+        Stance::Circular(Sense::Retrograde) => json!("retrograde"),
+        Stance::Rain => json!("rain"),
+        Stance::Infinity { inclination_deg, azimuth_deg, height } => {
+            json!({ "inclination_deg": inclination_deg, "azimuth_deg": azimuth_deg, "height": height })
+        }
+    }
 }
 
 pub fn camera(camera: &Camera) -> Value {
@@ -98,23 +112,74 @@ pub fn table_notes(shading: &Shading) -> Vec<String> {
     bad.map(note).collect()
 }
 
+/// "flat", or what there is besides.
+pub fn spacetime(scene: &Scene) -> Value {
+    match scene.spacetime {
+        Spacetime::Flat => json!("flat"),
+        Spacetime::Kerr(hole) => json!({
+            "metric": "kerr",
+            "mass": hole.mass(),
+            "spin": hole.spin() / hole.mass(),
+            "horizon": hole.horizon(),
+        }),
+    }
+}
+
 /// How many rays there were.
-pub fn rays(traced: Traced) -> Value {
-    let Count { primary, shadow, blocked, path } = traced.count;
+pub fn rays(traced: Traced, scene: &Scene) -> Value {
+    let Traced { count, noise } = traced;
+    let Count { primary, shadow, blocked, path, bodies, sky, hole, impossible, .. } = count;
+    if !scene.spacetime.is_curved() {
+        return json!({
+            "from_camera": primary,
+            "to_lights": shadow,
+            "to_lights_blocked": blocked,
+            "of_paths": path,
+            "noise": noise,
+        });
+    }
     json!({
         "from_camera": primary,
-        "to_lights": shadow,
-        "to_lights_blocked": blocked,
-        "of_paths": path,
-        "noise": traced.noise,
+        "from_bodies": bodies,
+        "from_sky": sky,
+        "from_hole": hole,
+        "from_impossible": impossible,
+        "failed": { "step_limit": count.step_limit, "drift": count.drifted, "not_a_number": count.singular },
     })
 }
 
+/// Rays that show nothing, for people to read.
+pub fn ray_notes(count: &Count) -> Vec<String> {
+    let mut notes = Vec::new();
+    if count.hole > 0 {
+        notes.push(format!("rays into the hole: {}; failed: {}", count_in_words(count.hole), count.failed()));
+    }
+    if count.failed() > 0 {
+        notes.push(format!(
+            "{} rays could not be followed (step limit {}, drift {}, not a number {}); where they begin is magenta",
+            count.failed(),
+            count.step_limit,
+            count.drifted,
+            count.singular
+        ));
+    }
+    if count.impossible > 0 {
+        notes.push(format!(
+            "{} rays meet a body where it would move faster than light, as what rests in an ergosphere; there the picture is magenta",
+            count_in_words(count.impossible)
+        ));
+    }
+    notes
+}
+
 /// What is not drawn of a scene's light, for people to read.
-pub fn light_notes(scene: &Scene, options: &Options) -> Option<String> {
-    shadow_note(scene, options.coloring)
-        .filter(|_| options.method == Method::Apparent)
-        .map(|note| format!("{note}; --method trace draws them"))
+pub fn light_notes(scene: &Scene, options: &Options) -> Vec<String> {
+    if options.method != Method::Apparent {
+        return Vec::new();
+    }
+    let sky = scene.sky.is_some().then(|| "the sky is not there".to_owned());
+    let notes = shadow_note(scene, options.coloring).into_iter().chain(sky);
+    notes.map(|note| format!("{note}; --method trace draws it")).collect()
 }
 
 /// As [`light_notes`], where nothing can be traced.

@@ -110,6 +110,11 @@ impl Transform {
             return Err(format!("--fps {} is not above 0", self.fps).into());
         }
         let mut scene = self.scene()?;
+        if scene.spacetime.is_curved() {
+            let why = "in curved spacetime a body can be seen in several places at once, so there is no one shape to write; draw it with `terrell render`";
+            return Err(why.into());
+        }
+        scene.check_spacetime()?;
         scene.notes.extend(self.notes(&scene));
         let camera = scene.camera()?;
         let output = self.output.clone().unwrap_or_else(|| format!("{}_seen.glb", scene.name).into());

@@ -72,10 +72,33 @@ impl<'a> Facet<'a> {
         if normal == DVec3::ZERO { facing } else { normal }
     }
 
+    /// A point of its plane, the facet's corners being where they are, as it is seen along a line of sight that points away
+    /// from the observer.
+    pub fn seen_along(&self, at: DVec3, sight: DVec3) -> Point {
+        Point::new(sight, self.normal(), self.point(at).normal)
+    }
+
     /// The surface's colours at a point of its plane; `sights` gives the line of sight to it, and those one pixel to
     /// the right and below, of any length that is linear in the pixel.
     #[inline]
     pub fn colors(&self, at: DVec3, sights: impl FnOnce() -> [DVec3; 3]) -> Colors {
+        self.colors_by(at, |weights| self.changes(weights, sights()))
+    }
+
+    /// As [`colors`](Self::colors), where lines of sight are not straight: `moves` gives the ways from the point to those
+    /// seen one pixel to the right and below; what of them leaves the plane does not matter.
+    #[inline]
+    pub fn colors_moving(&self, at: DVec3, moves: impl FnOnce() -> [DVec3; 2]) -> Colors {
+        self.colors_by(at, |weights| {
+            moves().map(|step| {
+                let there = self.weights(at + step);
+                [0, 1, 2].map(|i| there[i] - weights[i])
+            })
+        })
+    }
+
+    #[inline]
+    fn colors_by(&self, at: DVec3, changes: impl FnOnce([f64; 3]) -> [[f64; 3]; 2]) -> Colors {
         let mesh = self.mesh;
         let textured = mesh.material_of(self.face).is_some_and(Material::is_textured);
         if mesh.paint.is_of_faces() && !textured {
@@ -87,7 +110,7 @@ impl<'a> Facet<'a> {
         }
         let corner_uv = mesh.corner_uv(self.face).unwrap_or_default();
         let mix = |w: [f64; 3]| w[0] * corner_uv[0] + w[1] * corner_uv[1] + w[2] * corner_uv[2];
-        let (uv, step) = (mix(weights), self.changes(weights, sights()).map(mix));
+        let (uv, step) = (mix(weights), changes(weights).map(mix));
         mesh.colors(self.face, weights, |texture| texture.at(uv, step))
     }
 

@@ -180,6 +180,16 @@ impl<'a> SeenShading<'a> {
         finite(self.at_point(body, material, doppler, colors, &point(), reaches))
     }
 
+    /// Linear sRGB radiance, in units of the film's white, of a sky of a colour that is seen with a Doppler factor; of none,
+    /// black.
+    pub fn sky(&self, doppler: f64, color: [f32; 3]) -> [f32; 3] {
+        match (&self.shading.sky, self.shading.coloring) {
+            (None, _) => [0.0; 3],
+            (_, Coloring::Doppler) => finite(false_color(doppler)),
+            (Some(sky), coloring) => finite(sky.shines(coloring, doppler, color)),
+        }
+    }
+
     /// A material of a body, for those who follow light further.
     pub(crate) fn surface(&self, body: usize, material: usize) -> SurfaceLight<'a> {
         SurfaceLight {

@@ -18,6 +18,7 @@ pub struct Shading {
     pub(super) doppler_at: DopplerAt,
     pub(super) lights: Vec<SceneLight>,
     pub(super) bodies: Vec<BodyShading>,
+    pub(super) sky: Option<MaterialShading>,
     tables: Vec<TableInfo>,
 }
 
@@ -66,6 +67,10 @@ pub(super) struct MaterialShading {
     pub reflected: Vec<Arc<RowTable>>,
 }
 
+/// How far |ln D| goes in tables for curved spacetime, where it has no bound: near a horizon D goes to 0 and to infinity.
+/// What is shifted to the red so far has long been dark.
+const CURVED_RANGE: f64 = 12.0;
+
 /// A spectrum that cannot be, and whose it is.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{name}: {source}")]
@@ -105,7 +110,8 @@ impl Shading {
     ) -> Result<Self, ShadingError> {
         let observers = observers.into_iter().map(|o| o.celerity().rapidity()).fold(0.0, f64::max);
         let bodies = scene.bodies.iter().map(|b| b.motion.celerity.rapidity()).fold(0.0, f64::max);
-        Self::within(scene, bodies + observers, coloring)
+        let curved = if scene.spacetime.is_curved() { CURVED_RANGE } else { 0.0 };
+        Self::within(scene, bodies + observers + curved, coloring)
     }
 
     /// Of a scene whose bodies have relative rapidities of at most `range` to whoever looks.
@@ -167,7 +173,23 @@ impl Shading {
                 .collect::<Result<_, ShadingError>>()?;
             bodies.push(BodyShading { motion: body.motion, materials, incidences });
         }
-        Ok(Self { coloring, doppler_at: DopplerAt::default(), lights, bodies, tables: tables.infos })
+        let sky = scene.sky.as_ref().map(|sky| {
+            let own = (coloring == Coloring::Spectral).then(|| tables.own(&sky.spectrum));
+            Ok(MaterialShading {
+                lit: false,
+                law: EmissionLaw::default(),
+                gloss: Gloss::default(),
+                strength: sky.spectrum.strength.value() as f32,
+                spectrum: sky.spectrum.clone(),
+                scale: sky.spectrum.scale()?,
+                unshifted: unshifted(&sky.spectrum)?,
+                own: own.transpose()?,
+                reflected: Vec::new(),
+            })
+        });
+        let sky = sky.transpose().map_err(|source| ShadingError { name: "the sky".into(), source })?;
+        let tables = tables.infos;
+        Ok(Self { coloring, doppler_at: DopplerAt::default(), lights, bodies, sky, tables })
     }
 
     /// The same with the Doppler factor worked out elsewhere.

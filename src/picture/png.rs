@@ -1,5 +1,5 @@
 use crate::color::encoded;
-use crate::film::Film;
+use crate::film::{FLAGGED, Film};
 use crate::tone::Development;
 use rayon::prelude::*;
 use std::io::Write;
@@ -13,6 +13,10 @@ pub fn pixels_srgb(film: &Film, development: &Development) -> Vec<u8> {
             pixel.copy_from_slice(&shown(*color).map(encoded));
         }
     });
+    // At any exposure.
+    for (_, pixel) in pixels.chunks_exact_mut(3).enumerate().filter(|(i, _)| film.is_flagged(*i)) {
+        pixel.copy_from_slice(&FLAGGED.map(encoded));
+    }
     pixels
 }
 

@@ -21,7 +21,7 @@ impl Builtin {
     }
 }
 
-const SCENES: [Builtin; 11] = [
+const SCENES: [Builtin; 12] = [
     Builtin {
         name: "cube",
         about: "a cube passing at 0.9c, seen as it appears abreast: it seems to turn (Fig. 2)",
@@ -76,6 +76,11 @@ const SCENES: [Builtin; 11] = [
         name: "train",
         about: "a train passing at 0.9c between the piers and the wall of a station: what hides what (--color geometry)",
         toml: include_str!("../../assets/train.toml"),
+    },
+    Builtin {
+        name: "blackhole",
+        about: "a globe and cubes around a rotating black hole, before a checkered sky: all of it bent, much of it seen twice",
+        toml: include_str!("../../assets/blackhole.toml"),
     },
 ];
 

@@ -1,4 +1,4 @@
-use super::{Paint, Scene};
+use super::{Paint, Scene, SkyTexture};
 
 /// A number that differs where what is drawn may differ: FNV-1a (G. Fowler, L. Noll, K.-P. Vo), 64 bits.
 ///
@@ -39,7 +39,7 @@ impl Fingerprint {
 }
 
 impl Scene {
-    /// Of all that is drawn, but not of the view.
+    /// Of all that is drawn, and how the camera is there, but not of the view.
     pub fn fingerprint(&self) -> Fingerprint {
         let mut out = Fingerprint::default();
         for body in &self.bodies {
@@ -73,7 +73,13 @@ impl Scene {
                 ));
             }
         }
-        out.with_value(&self.lights)
+        if let Some(sky) = &self.sky {
+            out = out.with_value(&(sky.texture.describe(), &sky.spectrum, sky.rotation));
+            if let SkyTexture::Picture(texture) = &sky.texture {
+                out = out.with(texture.picture.texels().iter().flatten().copied());
+            }
+        }
+        out.with_value(&(&self.lights, self.spacetime, self.view.stance))
     }
 }
 

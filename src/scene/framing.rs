@@ -47,13 +47,10 @@ pub fn authored(name: &str, imported: Imported, celerity: Option<Celerity>, lens
             passing(name, imported, celerity, view, from_camera, centre)
         }
         None => Scene {
-            name: name.to_owned(),
-            bodies: imported.parts.into_iter().map(Part::into_body).collect(),
             lights: imported.lights,
-            view,
-            animation: None,
             files: imported.files,
             notes: imported.notes,
+            ..Scene::new(name, imported.parts.into_iter().map(Part::into_body).collect(), view)
         },
     }
 }
@@ -77,13 +74,10 @@ fn passing(
     imported.lights.iter_mut().for_each(|light| light.motion.origin = light.motion.origin + shift);
     let body = |part: Part| super::Body { motion, ..part.into_body() };
     Scene {
-        name: name.to_owned(),
-        bodies: imported.parts.into_iter().map(body).collect(),
         lights: imported.lights,
-        view,
-        animation: None,
         files: imported.files,
         notes: imported.notes,
+        ..Scene::new(name, imported.parts.into_iter().map(body).collect(), view)
     }
 }
 

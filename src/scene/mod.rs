@@ -5,6 +5,7 @@ mod body;
 mod builtin;
 mod camera;
 mod clip;
+mod eye;
 mod file;
 mod fingerprint;
 mod framing;
@@ -15,6 +16,9 @@ mod mesh;
 mod path;
 mod room;
 pub mod shapes;
+mod sky;
+mod spacetime;
+mod stars;
 mod texture;
 mod velocity;
 mod view;
@@ -24,6 +28,7 @@ pub use body::Body;
 pub use builtin::{Builtin, NoSuchScene, builtin_mesh, builtin_meshes, builtin_scene, builtin_scenes};
 pub use camera::{Camera, Lens, LensError, MAX_PIXELS, MAX_SIDE, Projection};
 pub use clip::{Between, Blend, Clip, Joint, Track};
+pub use eye::{DistantEye, Eye, EyeError};
 pub use file::{SceneError, parse_scene};
 pub use fingerprint::Fingerprint;
 pub use framing::{authored, framed};
@@ -35,6 +40,8 @@ pub use light::{Light, LightKind};
 pub use material::{Colors, EmissionLaw, Gloss, Material, Surface};
 pub use mesh::{Mesh, MeshError, Paint};
 pub use path::{CameraPath, Key, PathError};
+pub use sky::{Sky, SkyTexture};
+pub use spacetime::{Spacetime, SpacetimeError, Stance};
 pub use texture::{MAX_TEXELS, Picture, Texture, Wrap};
 pub use view::{Aim, View, ViewError};
 
@@ -49,6 +56,10 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// What lights it; where there is nothing, surfaces shine by themselves.
     pub lights: Vec<Light>,
+    /// What lies behind everything, if anything does.
+    pub sky: Option<Sky>,
+    /// The spacetime all of it lies in.
+    pub spacetime: Spacetime,
     /// The camera, before a moment is chosen.
     pub view: View,
     /// How it is filmed, if it says so.
@@ -86,7 +97,8 @@ impl Scene {
     /// Bodies and a view, and nothing else.
     pub fn new(name: &str, bodies: Vec<Body>, view: View) -> Self {
         let (lights, files, notes) = (Vec::new(), Vec::new(), Vec::new());
-        Self { name: name.to_owned(), bodies, lights, view, animation: None, files, notes }
+        let (sky, spacetime, animation) = (None, Spacetime::Flat, None);
+        Self { name: name.to_owned(), bodies, lights, sky, spacetime, view, animation, files, notes }
     }
 
     /// The camera at the moment the view asks for.
@@ -95,6 +107,14 @@ impl Scene {
     /// If the view cannot be had; see [`ViewError`].
     pub fn camera(&self) -> Result<Camera, ViewError> {
         self.view.camera(&self.bodies)
+    }
+
+    /// The camera in the scene's spacetime, which is [`Camera::observer`] by flat spacetime's rules; none where that is all.
+    ///
+    /// # Errors
+    /// If nobody can be there; see [`EyeError`].
+    pub fn eye(&self, camera: &Camera) -> Result<Option<Eye>, EyeError> {
+        Eye::new(&self.spacetime, &self.view, &camera.observer)
     }
 
     /// Sets how many seconds of their clips pass in a unit of time, for all that is animated; 0 stops it.

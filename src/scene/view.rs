@@ -1,4 +1,4 @@
-use super::{Body, Camera, Lens, LensError, Projection};
+use super::{Body, Camera, Lens, LensError, Projection, Stance};
 use crate::relativity::{ApparentMap, Motion};
 use glam::DVec3;
 use terrell_geodesic::{Celerity, Event, Tetrad, TetradError, World};
@@ -10,6 +10,8 @@ pub struct View {
     pub event: Event<World>,
     /// Its motion.
     pub celerity: Celerity,
+    /// How it is there, in curved spacetime.
+    pub stance: Stance,
     /// Where it looks.
     pub aim: Aim,
     /// What is up in the picture, in the camera's (unrotated) axes.
@@ -68,6 +70,7 @@ impl Default for View {
         Self {
             event: Event::origin(),
             celerity: Celerity::at_rest(),
+            stance: Stance::Moving,
             aim: Aim::Forward(DVec3::Y),
             up: DVec3::Z,
             projection: Projection::Pinhole,

@@ -5,9 +5,14 @@
 //! and D = 1/|K′ᵗ|. From what is met, the null vectors to the lights are followed in the same way, so that shadows are
 //! where light *was* in the way of.
 //!
+//! Through curved spacetime each ray is a chain of chords, and the same holds of each of them: see
+//! [`Tracer::trace_curved`].
+//!
 //! It finds the point of the surface otherwise than [`raster`](crate::raster) does, and knows shadows; all else is the same.
 
 mod beam;
+mod chord;
+mod curved;
 mod emitters;
 mod lanes;
 mod origin;
@@ -21,13 +26,16 @@ mod tree;
 
 use crate::film::Film;
 use crate::light::SeenShading;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Eye, Lens, Scene};
 use crate::spectrum::luminance;
+use chord::Goal;
 use emitters::Emitters;
 use path::World;
 use rayon::prelude::*;
 use stage::Stage;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use terrell_geodesic::{Spacetime, Wide};
 use tile::{Job, SIDE, Tile};
 use tree::Tree;
 
@@ -123,7 +131,10 @@ impl Tracer {
         let world =
             emitters.as_ref().map(|emitters| World { stage: &stage, shading, emitters, coloring, paths });
         let lens = &camera.lens;
-        let job = Job { stage: &stage, lens, shading, samples, vectors: self.vectors, world: world.as_ref() };
+        let world_from_observer = || camera.observer.observer_from_world::<Wide>().inverse().rounded();
+        let sky = scene.sky.as_ref().map(|sky| (sky, world_from_observer()));
+        let vectors = self.vectors;
+        let job = Job { stage: &stage, lens, shading, sky, samples, vectors, world: world.as_ref() };
         let all = samples.len();
         let passes = if follows { PASSES.min(all) } else { 1 };
         let mut traced = Traced::default();
@@ -137,8 +148,8 @@ impl Tracer {
                 .map_init(Tile::default, |tile, (index, rows)| {
                     tile.draw_band(&job, index as u32 * SIDE, range.clone(), rows)
                 })
-                .reduce(Count::default, Count::add);
-            traced.count = traced.count.add(count);
+                .reduce(Count::default, Count::with);
+            traced.count = traced.count.with(count);
             if follows && 2 * range.end == all {
                 half.clone_from(&film.color);
             }
@@ -157,11 +168,53 @@ impl Tracer {
     ) -> Count {
         let stage = self.stage(scene, camera, shading.lights() > 0);
         let lens = &camera.lens;
-        let job = Job { stage: &stage, lens, shading, samples, vectors: self.vectors, world: None };
+        let vectors = self.vectors;
+        let job = Job { stage: &stage, lens, shading, sky: None, samples, vectors, world: None };
         (0..camera.lens.height().div_ceil(SIDE))
             .into_par_iter()
             .map_init(Tile::default, |tile, band| tile.cast_band(&job, band * SIDE))
-            .reduce(Count::default, Count::add)
+            .reduce(Count::default, Count::with)
+    }
+
+    /// Traces what is seen in curved spacetime, whatever its metric, onto a film, which is cleared first; `done` is told how
+    /// many rows are finished, by whatever thread.
+    ///
+    /// A body is a rigid mesh in the spacetime's coordinates, moving uniformly in them, X = L(celerity)·X′ + origin as in
+    /// flat spacetime. A ray's chords are met with its boxes, inflated by how far the ray may be from them; whether and
+    /// where it goes through a triangle is then decided on the ray itself. D is the quotient of the products of wave vector
+    /// and four-velocity at both ends, in the metric there. Lights and light of
+    /// surfaces on each other are left out.
+    #[expect(clippy::too_many_arguments, reason = "as many as things meet in a picture")]
+    pub fn trace_curved<S: Spacetime>(
+        &self,
+        scene: &Scene,
+        space: &S,
+        eye: &Eye,
+        lens: &Lens,
+        look: &Look<'_>,
+        film: &mut Film,
+        done: impl Fn(u32) + Sync,
+    ) -> Traced {
+        let Look { samples, shading, .. } = *look;
+        film.clear(lens.width(), lens.height());
+        let goals = scene.bodies.iter().enumerate().zip(&self.trees).map(|((index, body), tree)| {
+            let tree = tree.clone().unwrap_or_else(|| Arc::new(Tree::new(&body.mesh)));
+            Goal::new(index, &body.motion, body.mesh.clone(), tree, space.sagitta(), space.lag())
+        });
+        let goals: Vec<Goal> = goals.collect();
+        let job = curved::Job { space, goals: &goals, eye, lens, sky: scene.sky.as_ref(), shading, samples };
+        let finished = AtomicU32::new(0);
+        let count = film
+            .bands(SIDE)
+            .enumerate()
+            .map_init(curved::Band::default, |band, (index, mut rows)| {
+                let count = band.draw(&job, index as u32 * SIDE, &mut rows);
+                let rows = (rows.body.len() / lens.width() as usize) as u32;
+                done(finished.fetch_add(rows, Ordering::Relaxed) + rows);
+                count
+            })
+            .reduce(Count::default, Count::with);
+        Traced { count, noise: None }
     }
 
     fn stage(&self, scene: &Scene, camera: &Camera, lit: bool) -> Stage {

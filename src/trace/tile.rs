@@ -6,9 +6,10 @@ use super::random::Random;
 use super::stage::{Stage, Target, Way};
 use crate::film::Rows;
 use crate::light::{Facet, Point, SeenShading};
-use crate::scene::Lens;
+use crate::scene::{Lens, Sky};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
+use terrell_geodesic::{FourVector, Lorentz, Observer};
 
 /// Pixels of a tile's side.
 pub(super) const SIDE: u32 = 8;
@@ -44,17 +45,45 @@ pub struct Count {
     pub shadow: u64,
     /// Of those, how many something stood in the way of.
     pub blocked: u64,
+    /// Rays through curved spacetime that met a body, where nothing is wrong with it.
+    pub bodies: u64,
+    /// Those that came from the sky.
+    pub sky: u64,
+    /// Those that came out of a black hole.
+    pub hole: u64,
+    /// Those that met a surface that would move faster than light there.
+    pub impossible: u64,
+    /// Those given up because they took too many steps.
+    pub step_limit: u64,
+    /// Those given up because they drifted off the light cone.
+    pub drifted: u64,
+    /// Those given up because the metric was none, or something no number.
+    pub singular: u64,
     /// Rays of paths from surface to surface, and from there to lights.
     pub path: u64,
 }
 
 impl Count {
-    pub(super) fn add(mut self, other: Self) -> Self {
+    /// Both together.
+    #[must_use]
+    pub fn with(mut self, other: Self) -> Self {
         self.primary += other.primary;
         self.shadow += other.shadow;
         self.blocked += other.blocked;
+        self.bodies += other.bodies;
+        self.sky += other.sky;
+        self.hole += other.hole;
+        self.impossible += other.impossible;
+        self.step_limit += other.step_limit;
+        self.drifted += other.drifted;
+        self.singular += other.singular;
         self.path += other.path;
         self
+    }
+
+    /// Rays that were given up.
+    pub fn failed(&self) -> u64 {
+        self.step_limit + self.drifted + self.singular
     }
 }
 
@@ -81,6 +110,8 @@ pub(super) struct Job<'a> {
     pub stage: &'a Stage,
     pub lens: &'a Lens,
     pub shading: &'a SeenShading<'a>,
+    /// What lies behind everything, and the map from the observer to its frame.
+    pub sky: Option<(&'a Sky, Lorentz<terrell_geodesic::World, Observer>)>,
     /// Of the samples, in pixels from a pixel's corner.
     pub samples: &'a [[f64; 2]],
     /// Whether AVX2 may be used.
@@ -268,6 +299,9 @@ impl Tile {
         let spread = f64::from(weight.sqrt());
         for (number, sight) in self.sights.iter().enumerate() {
             if sight.leaf == NONE {
+                if let Some((sky, world_from_observer)) = &job.sky {
+                    sight.see_sky(job, sky, world_from_observer, weight, sample == 0, rows);
+                }
                 continue;
             }
             let (target, facet, at) = sight.meets(job.stage);
@@ -344,6 +378,33 @@ fn cone(lens: &Lens, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> (DVec3
 }
 
 impl Sight {
+    /// What of the sky is seen where nothing is in the way.
+    fn see_sky(
+        &self,
+        job: &Job<'_>,
+        sky: &Sky,
+        world_from_observer: &Lorentz<terrell_geodesic::World, Observer>,
+        weight: f32,
+        centre: bool,
+        rows: &mut Rows<'_>,
+    ) {
+        let spread = f64::from(weight.sqrt());
+        let sight = |v: DVec3| *world_from_observer * FourVector::seen_from(v.normalize());
+        let to = |step: DVec2| {
+            let there = job.lens.direction(self.at + step * spread).unwrap_or(self.direction);
+            sight(there).xyz().normalize_or(DVec3::Z)
+        };
+        let here = sight(self.direction);
+        let (direction, doppler) = (here.xyz().normalize_or(DVec3::Z), 1.0 / here.t.abs());
+        let steps = [DVec2::X, DVec2::Y].map(|step| to(step) - direction);
+        let light = job.shading.sky(doppler, sky.color(direction, steps));
+        let color = &mut rows.color[self.pixel];
+        *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
+        if centre {
+            rows.doppler[self.pixel] = doppler as f32;
+        }
+    }
+
     /// The body, the triangle, and where on it, both from the observer in the rest frame.
     #[inline]
     fn meets<'a>(&self, stage: &'a Stage) -> (&'a Target, Facet<'a>, DVec3) {

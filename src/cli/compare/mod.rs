@@ -143,6 +143,11 @@ impl Compare {
         let options = self.look.options()?;
         let reference = self.reference.as_deref().map(picture::read_reference).transpose()?;
         let mut scenes = self.open(reference.as_ref())?;
+        if let Some(scene) = scenes.iter().find(|scene| scene.spacetime.is_curved()) {
+            let why =
+                "in curved spacetime rays are the only method, and there is nothing to compare them with";
+            return Err(format!("'{}': {why}; draw it with `terrell render`", scene.name).into());
+        }
         let cameras = scenes.iter().map(Scene::camera).collect::<Result<Vec<_>, _>>()?;
         if let (Some(reference), [camera], Some(path)) = (&reference, &cameras[..], &self.reference) {
             let [there, asked] =

@@ -194,7 +194,7 @@ fn read_scale(source: &Source<'_>, place: &Spanned<Scale>) -> Result<DVec3, Scen
     Ok(scale)
 }
 
-fn read_rotation(source: &Source<'_>, table: &RotationTable) -> Result<DQuat, SceneError> {
+pub(super) fn read_rotation(source: &Source<'_>, table: &RotationTable) -> Result<DQuat, SceneError> {
     let axis = source.vector("rotation.axis", &table.axis)?.normalize_or_zero();
     if axis == DVec3::ZERO {
         return Err(source.at(&table.axis, "rotation.axis has length zero"));

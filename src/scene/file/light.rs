@@ -50,7 +50,7 @@ impl Finish {
 }
 
 /// One of the words, each of which stands for a value.
-fn word<T: Copy>(
+pub(super) fn word<T: Copy>(
     source: &Source<'_>,
     key: &str,
     place: &Spanned<String>,
@@ -63,7 +63,8 @@ fn word<T: Copy>(
     })
 }
 
-const BEYOND: [(&str, Beyond); 3] = [("grey", Beyond::Grey), ("edge", Beyond::Edge), ("dark", Beyond::Dark)];
+pub(super) const BEYOND: [(&str, Beyond); 3] =
+    [("grey", Beyond::Grey), ("edge", Beyond::Edge), ("dark", Beyond::Dark)];
 
 /// A word, or a table of a few keys.
 struct Choice<'a> {
@@ -97,7 +98,7 @@ impl Choice<'_> {
     }
 }
 
-fn read_shape(
+pub(super) fn read_shape(
     source: &Source<'_>,
     place: &Spanned<Value>,
     files: &mut Vec<PathBuf>,
@@ -136,7 +137,11 @@ fn read_shape(
 }
 
 /// Checked, and told where it stands if it cannot be.
-fn checked<T>(source: &Source<'_>, place: &Spanned<T>, spectrum: Spectrum) -> Result<Spectrum, SceneError> {
+pub(super) fn checked<T>(
+    source: &Source<'_>,
+    place: &Spanned<T>,
+    spectrum: Spectrum,
+) -> Result<Spectrum, SceneError> {
     match spectrum.scale() {
         Ok(_) => Ok(spectrum),
         Err(e) => Err(source.at(place, e)),

@@ -4,6 +4,7 @@ mod animation;
 mod body;
 mod light;
 mod source;
+mod spacetime;
 mod tables;
 
 pub use source::SceneError;
@@ -36,6 +37,9 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     for (name, table) in &file.material {
         finishes.insert(name.as_str(), read_material(&source, table, &mut files)?);
     }
+    let spacetime = file.spacetime.as_ref().map(|table| spacetime::read_spacetime(&source, table));
+    let spacetime = spacetime.transpose()?.unwrap_or_default();
+    let sky = file.sky.as_ref().map(|table| spacetime::read_sky(&source, table, &mut files)).transpose()?;
     let read_light = |(index, table)| read_light(&source, index, table, &mut files);
     let lights: Vec<_> = file.light.iter().enumerate().map(read_light).collect::<Result<_, _>>()?;
     let mut reader = Bodies::new(&source, &finishes, files);
@@ -78,7 +82,8 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             body.mesh = plains.entry(Arc::as_ptr(&body.mesh)).or_insert_with(plain).clone();
         }
     }
-    let mut scene = Scene { files, notes, lights, ..Scene::new(&name, bodies, view) };
+    let mut scene = Scene { files, notes, lights, sky, spacetime, ..Scene::new(&name, bodies, view) };
+    spacetime::check(&source, file.camera.as_ref(), &file.light, &scene)?;
     if let Some(table) = &file.animation {
         scene.animation = Some(animation::read_animation(&source, table, &scene)?);
     }
@@ -95,6 +100,7 @@ fn read_camera(source: &Source<'_>, table: &CameraTable) -> Result<View, SceneEr
     Ok(View {
         event: source.event(&table.time, &table.position)?,
         celerity: source.celerity(&velocity_keys!(table))?,
+        stance: spacetime::read_stance(source, table)?,
         aim,
         up: table.up.as_ref().map_or(Ok(usual.up), |u| source.vector("up", u))?,
         projection,

@@ -7,7 +7,9 @@ use toml::{Spanned, Value};
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneFile {
+    pub spacetime: Option<SpacetimeTable>,
     pub camera: Option<CameraTable>,
+    pub sky: Option<SkyTable>,
     #[serde(default)]
     pub body: Vec<BodyTable>,
     #[serde(default)]
@@ -37,6 +39,34 @@ pub(super) struct CameraTable {
     pub fov_deg: Option<Spanned<f64>>,
     pub size: Option<Spanned<[u32; 2]>>,
     pub nearest: Option<Spanned<String>>,
+    pub observer: Option<Spanned<String>>,
+    pub at_infinity: Option<Spanned<InfinityTable>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct InfinityTable {
+    pub inclination_deg: Spanned<f64>,
+    pub azimuth_deg: Option<Spanned<f64>>,
+    pub height: Spanned<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SpacetimeTable {
+    pub metric: Spanned<String>,
+    pub mass: Option<Spanned<f64>>,
+    pub spin: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SkyTable {
+    pub texture: Spanned<String>,
+    pub strength: Option<Spanned<f64>>,
+    pub spectrum: Option<Spanned<Value>>,
+    pub beyond: Option<Spanned<String>>,
+    pub rotation: Option<RotationTable>,
 }
 
 #[derive(Deserialize)]

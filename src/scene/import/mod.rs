@@ -202,6 +202,8 @@ pub fn import_choosing(path: &Path, choice: &Choice) -> Result<Imported, ImportE
     checked(imported, path)
 }
 
+pub(super) use picture::{decode, is_picture_file};
+
 /// The contents of a plain file: devices and pipes may never end.
 pub fn read_plain(path: &Path) -> std::io::Result<Vec<u8>> {
     let about = std::fs::metadata(path)?;

@@ -5,7 +5,7 @@ use std::io::Cursor;
 /// Decodes a PNG, JPEG, BMP or TGA picture; what it is made transparent by is left out.
 ///
 /// Small files can hold huge pictures; those above [`MAX_TEXELS`] are refused before they fill the memory.
-pub(super) fn decode(name: &str, bytes: Vec<u8>) -> Result<Picture, String> {
+pub(in crate::scene) fn decode(name: &str, bytes: Vec<u8>) -> Result<Picture, String> {
     let fault = |e: &dyn std::fmt::Display| format!("the picture '{name}' cannot be read: {e}");
     let mut reader = ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|e| fault(&e))?;
     if reader.format().is_none() {
@@ -32,4 +32,10 @@ pub(super) fn decode(name: &str, bytes: Vec<u8>) -> Result<Picture, String> {
         picture.file = Some(bytes);
     }
     Ok(picture)
+}
+
+/// Whether a file is named as pictures that can be read are.
+pub(in crate::scene) fn is_picture_file(path: &std::path::Path) -> bool {
+    const ENDINGS: [&str; 5] = ["png", "jpg", "jpeg", "bmp", "tga"];
+    path.extension().is_some_and(|e| ENDINGS.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
 }
