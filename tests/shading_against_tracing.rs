@@ -1,12 +1,11 @@
-//! Every scene that ships and in which nothing casts shadows: what shading sees against what rays see.
+//! Every scene that ships and in which no surface is lit: what shading sees against what rays see.
 //!
 //! What disagrees must do so within a pixel of an outline; and where both see the same triangle, all else is equal.
 
 use terrell::color::Coloring;
 use terrell::film::Film;
-use terrell::light::has_shadows;
 use terrell::measure::{Comparison, Corners, Figures, Mark, Reference};
-use terrell::plan::Method;
+use terrell::plan::{Method, cheapest};
 use terrell::render::{Options, Raster, render};
 use terrell::scene::{Camera, Scene, builtin_scenes};
 use terrell::trace::{Look, Paths, Tracer};
@@ -18,7 +17,11 @@ fn scenes() -> impl Iterator<Item = Scene> {
         scene.view.size = SIZE;
         scene
     };
-    builtin_scenes().iter().map(|scene| scene.scene()).filter(|scene| !has_shadows(scene)).map(small)
+    builtin_scenes().iter().map(|scene| scene.scene()).filter(is_apparent).map(small)
+}
+
+fn is_apparent(scene: &Scene) -> bool {
+    cheapest(scene, Coloring::Spectral).0 == Method::Apparent
 }
 
 fn draw(scene: &Scene, camera: &Camera, method: Method, raster: Raster) -> Film {

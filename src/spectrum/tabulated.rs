@@ -69,13 +69,16 @@ impl Tabulated {
             }
             points.push([nm, value]);
         }
-        if points.len() < 2 || points.iter().all(|p| p[1] == 0.0) {
+        let greatest = points.iter().map(|p| p[1]).fold(0.0, f64::max);
+        if points.len() < 2 || greatest == 0.0 {
             return Err(TabulatedError::Empty);
         }
+        // Only ratios count; others could leave the range of numbers.
+        points.iter_mut().for_each(|p| p[1] /= greatest);
         Ok(Self { name: name.to_owned(), points })
     }
 
-    /// The value at a wavelength, by straight lines.
+    /// The value at a wavelength, by straight lines; the greatest of the table is 1.
     pub fn at(&self, nm: f64, beyond: Beyond) -> f64 {
         let next = self.points.partition_point(|p| p[0] < nm);
         let edge = |value: f64| if beyond == Beyond::Edge { value } else { 0.0 };
@@ -111,12 +114,14 @@ mod tests {
 
     #[test]
     fn tables_are_read_and_faults_named() {
-        let table = Tabulated::parse("nm,value\n# lamp\n400, 1\n500,3\n 600;0\n", "t").unwrap();
-        assert_eq!(table.at(450.0, Beyond::Grey), 2.0);
-        assert_eq!(table.at(400.0, Beyond::Grey), 1.0);
+        let table = Tabulated::parse("nm,value\n# lamp\n400, 1\n500,4\n 600;0\n", "t").unwrap();
+        assert_eq!(table.at(450.0, Beyond::Grey), 0.625);
+        assert_eq!(table.at(400.0, Beyond::Grey), 0.25);
         assert_eq!(table.at(399.0, Beyond::Grey), 0.0);
-        assert_eq!(table.at(399.0, Beyond::Edge), 1.0);
-        assert_eq!(table.integral(), 350.0);
+        assert_eq!(table.at(399.0, Beyond::Edge), 0.25);
+        assert_eq!(table.integral(), 112.5);
+        let faint = Tabulated::parse("400,1e-302\n500,4e-302\n600,0\n", "t").unwrap();
+        assert_eq!(faint.points, table.points);
         for (text, part) in [
             ("400,1\nabc,2\n", "line 2: 'abc,2'"),
             ("400,1\n300,2\n", "line 2"),

@@ -149,7 +149,7 @@ impl Tile {
             self.met.clear();
             let targets = job.stage.targets.iter().enumerate();
             self.met.extend(targets.filter(|(_, t)| t.outline.meets(axis, half_angle)).map(|(i, _)| i));
-            if self.met.is_empty() {
+            if self.met.is_empty() && job.sky.is_none() {
                 // Rays they are all the same.
                 self.count.primary += pass.len() as u64 * u64::from(size[0] * size[1]);
                 continue;
