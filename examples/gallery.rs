@@ -49,6 +49,11 @@ const PICTURES: &[(&str, &[&str])] = &[
     // Curved spacetime.
     ("blackhole.png", &["render", "blackhole", SIZE, "--samples=4"]),
     ("blackhole_stars.png", &["render", "STARS", SIZE, "--samples=4"]),
+    // Rays.
+    ("shadow_rest.png", &["render", "shadow", "--beta=0.001", SIZE, SMOOTH]),
+    ("shadow.png", &["render", "shadow", SIZE, SMOOTH]),
+    ("box_rest.png", &["render", "box", "--beta=0", SIZE, "--samples=256"]),
+    ("box.png", &["render", "box", SIZE, "--samples=256"]),
     // Light.
     ("cube.png", &["render", "cube", SIZE, SMOOTH]),
     ("hot_rest.png", &["render", "hot", "--beta=0", SIZE, SMOOTH, "--legend"]),

@@ -30,6 +30,7 @@
 //! | Eq. 3, 4 | [`relativity::Sight::doppler`], [`relativity::ApparentMap::doppler_towards`] | Doppler factor |
 //! | Eq. 5 | [`spectrum::Response`], [`light::Shading`] | I_ν/ν³ is invariant: spectra and colours under a shift |
 //! | section 2.2.3 | [`light::SeenShading::radiance`] | lights, aberrated, in each body's rest frame |
+//! | section 2.2.4 | [`trace::Tracer`] | shadows and reflections by rays, with light travel time |
 //! | Fig. 7 | [`geodesic::Spacetime`] | what hands straight segments to whoever looks |
 //!
 //! # Conventions
@@ -45,7 +46,7 @@
 //! # Reading order
 //!
 //! [`geodesic`] (events, Lorentz maps, observers) → [`relativity`] (the map) → [`scene`] (what is there) →
-//! [`apparent`] (what it looks like), [`spectrum`] and [`light`] (what it shines with) → [`raster`] → [`film`] →
+//! [`apparent`] (what it looks like), [`spectrum`] and [`light`] (what it shines with) → [`plan`] (how it is drawn) → [`raster`], or [`trace`] → [`film`] →
 //! [`exposure`], [`tone`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in turn. [`measure`] says how far two
 //! films are apart. [`mod@transform`] instead makes a [`export::Model`] for other programs of what there is and how it looks.
 

@@ -266,6 +266,15 @@ fn what_needs_ray_tracing_is_traced() {
     }
     assert!(lit(&["--color", "doppler"]).contains("apparent shading"));
     assert!(lit(&["--bounces", "2", "--samples", "4"]).contains("of paths of 2 reflections, noise"));
+    // A lamp in the middle of the cube.
+    let shut = scene("color = [1, 1, 1]").replace("position = [0, 0, 3]", "position = [0, 4, 0]");
+    std::fs::write(here.join("shut.toml"), shut).unwrap();
+    let told = good(&["render", "shut.toml", SMALL], here);
+    assert!(told.contains("light1' reaches nothing") && told.contains("inside a body"), "{told}");
+    std::fs::write(here.join("unlit.toml"), format!("[material.m]\nsurface = \"lit\"\n{CUBE}")).unwrap();
+    assert!(good(&["render", "unlit.toml", SMALL], here).contains("nothing lights them"));
+    std::fs::write(here.join("sky.toml"), "[sky]\ntexture = \"stars\"\n").unwrap();
+    assert!(good(&["render", "sky.toml", SMALL], here).contains("ray tracing"));
     let luminous = good(&["render", "luminous.toml", SMALL], here);
     assert!(luminous.contains("apparent shading") && !luminous.contains("--method trace"), "{luminous}");
     for (flags, word) in [

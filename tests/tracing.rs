@@ -359,7 +359,9 @@ fn a_lamp_inside_a_body_lights_nothing() {
     });
     let (film, report) = traced(&scene, Coloring::Geometry, 1, 0);
     assert!(film.covered() > 50 && film.color.iter().all(|c| *c == [0.0; 3]));
-    let count = report.rays.unwrap().count;
+    let rays = report.rays.unwrap();
+    let count = rays.count;
+    assert_eq!(rays.to_lights, [[count.shadow, count.blocked]]);
     assert!(count.shadow > 20 && count.blocked == count.shadow, "{count:?}");
 }
 
@@ -382,4 +384,37 @@ fn chance_is_repeatable() {
     let one = film(1, 1);
     assert_eq!(one, film(1, 3));
     assert_ne!(one, film(2, 2));
+}
+
+/// A luminous ball over a plate looks the same at any scale.
+#[test]
+fn scale_does_not_matter() {
+    let scene = |scale: f64| {
+        let sized = |mesh: Mesh| mesh.placed(&DAffine3::from_scale(DVec3::splat(scale)));
+        let at = |position: DVec3| Motion::at_rest(position * scale);
+        let plate = of(sized(shapes::plate()), material([0.8; 3], [0.0; 3], Gloss::default()));
+        let glow = Material { surface: Surface::Luminous, ..material([1.0; 3], [0.0; 3], Gloss::default()) };
+        let ball = of(sized(shapes::sphere(1)), glow);
+        let view = View {
+            event: Event::at(0.0, DVec3::new(0.0, -5.0, 2.0) * scale),
+            aim: Aim::LookAt(DVec3::ZERO),
+            size: [24, 18],
+            ..View::default()
+        };
+        Scene::new(
+            "scaled",
+            vec![
+                Body::new("plate", plate, at(DVec3::ZERO)),
+                Body::new("ball", ball, at(DVec3::new(0.0, 0.0, 2.0))),
+            ],
+            view,
+        )
+    };
+    let (whole, _) = traced(&scene(1.0), Coloring::Geometry, 4, 1);
+    // Powers of two do not round.
+    for exponent in [-80, -20, 60] {
+        let (scaled, _) = traced(&scene(2f64.powi(exponent)), Coloring::Geometry, 4, 1);
+        let off = whole.color.iter().zip(&scaled.color).map(|(a, b)| (a[1] - b[1]).abs()).fold(0.0, f32::max);
+        assert!(off < 1e-5 && whole.covered() > 20, "2^{exponent}: {off}");
+    }
 }

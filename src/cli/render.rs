@@ -11,7 +11,7 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use terrell::drawing::Shot;
-use terrell::film::Film;
+use terrell::film::{Film, HOLE};
 use terrell::light::Shading;
 use terrell::picture::{self, Format};
 use terrell::render::{Options, Report, Step, render_again};
@@ -204,12 +204,19 @@ impl Done<'_> {
             line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
         }
         let brightest = summary::brightest(self.film);
+        let dark: Vec<String> =
+            self.report.rays.iter().flat_map(|rays| summary::dark_lights(rays, self.scene)).collect();
+        let is_hole = self.film.body.iter().all(|body| *body == HOLE);
         if (self.film.covered() > 0 || self.scene.sky.is_some())
+            && dark.is_empty()
+            && !is_hole
             && summary::is_dark(brightest, &self.development)
         {
             line.push_str(&format!("note: {}\n", summary::dark_note(self.options.coloring)));
         }
-        for note in self.report.rays.iter().flat_map(|rays| summary::ray_notes(&rays.count)) {
+        for note in
+            dark.into_iter().chain(self.report.rays.iter().flat_map(|rays| summary::ray_notes(&rays.count)))
+        {
             line.push_str(&format!("note: {note}\n"));
         }
         for note in &self.scene.notes {
@@ -244,7 +251,7 @@ impl Done<'_> {
             "sky": scene.sky.as_ref().map(|sky| sky.texture.describe()),
             "triangles": report.triangles,
             "pieces": report.pieces,
-            "rays": report.rays.map(|rays| summary::rays(rays, scene)),
+            "rays": report.rays.as_ref().map(|rays| summary::rays(rays, scene)),
             "pixels_covered": film.covered(),
             "doppler_range": doppler.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
             "seconds": {

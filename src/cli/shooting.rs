@@ -189,8 +189,11 @@ impl Shooting<'_> {
         for (panel, film) in take.panels.iter().zip(films) {
             let Panel { scene, cameras, overlay, prepared, development } = panel;
             let report = render_again(scene, &cameras[i], &take.options, prepared, film, |_| ())?;
-            if let Some(count) =
-                report.rays.map(|rays| rays.count).filter(|count| count.failed() + count.impossible > 0)
+            if let Some(count) = report
+                .rays
+                .as_ref()
+                .map(|rays| rays.count)
+                .filter(|count| count.failed() + count.impossible > 0)
             {
                 self.tally.flagged += 1;
                 self.tally.rays = self.tally.rays.with(count);

@@ -23,7 +23,8 @@ pub fn bodies_in_words(gammas: &[f64]) -> String {
     let fastest = gammas.iter().copied().fold(1.0, f64::max);
     match gammas.len() {
         1 => format!("1 body, γ {fastest:.4}"),
-        n => format!("{n} bodies, γ up to {fastest:.4}"),
+        n if fastest < 1e6 => format!("{n} bodies, γ up to {fastest:.4}"),
+        n => format!("{n} bodies, γ up to {fastest:e}"),
     }
 }
 
@@ -126,14 +127,15 @@ pub fn spacetime(scene: &Scene) -> Value {
 }
 
 /// How many rays there were.
-pub fn rays(traced: Traced, scene: &Scene) -> Value {
-    let Traced { count, noise } = traced;
-    let Count { primary, shadow, blocked, path, bodies, sky, hole, impossible, .. } = count;
+pub fn rays(traced: &Traced, scene: &Scene) -> Value {
+    let Traced { count, noise, to_lights } = traced;
+    let Count { primary, shadow, blocked, path, bodies, sky, hole, impossible, .. } = *count;
     if !scene.spacetime.is_curved() {
         return json!({
             "from_camera": primary,
             "to_lights": shadow,
             "to_lights_blocked": blocked,
+            "to_each_light": to_lights.iter().map(|[asked, blocked]| json!({ "rays": asked, "blocked": blocked })).collect::<Vec<_>>(),
             "of_paths": path,
             "noise": noise,
         });
@@ -146,6 +148,19 @@ pub fn rays(traced: Traced, scene: &Scene) -> Value {
         "from_impossible": impossible,
         "failed": { "step_limit": count.step_limit, "drift": count.drifted, "not_a_number": count.singular },
     })
+}
+
+/// Lights of which nothing reaches what is seen, for people to read.
+pub fn dark_lights(traced: &Traced, scene: &Scene) -> Vec<String> {
+    let dark =
+        |([asked, blocked], light): &(&[u64; 2], &Light)| asked == blocked && light.kind.casts_shadows();
+    let note = |(_, light): (&[u64; 2], &Light)| {
+        format!(
+            "the light '{}' reaches nothing of what is seen: it shines from behind, or something stands in the way of all of it; is it inside a body?",
+            light.name
+        )
+    };
+    traced.to_lights.iter().zip(&scene.lights).filter(dark).map(note).collect()
 }
 
 /// Rays that show nothing, for people to read.
@@ -174,8 +189,15 @@ pub fn ray_notes(count: &Count) -> Vec<String> {
 
 /// What is not drawn of a scene's light, for people to read.
 pub fn light_notes(scene: &Scene, options: &Options) -> Vec<String> {
+    let colored = options.coloring != Coloring::Doppler;
+    let unlit = colored && scene.lights.is_empty() && !has_reflections(scene);
+    if unlit && scene.bodies.iter().flat_map(|b| &b.mesh.materials).any(|m| m.is_lit(false)) {
+        return vec!["some surfaces only reflect, and nothing lights them".to_owned()];
+    }
     if options.method != Method::Apparent {
-        return Vec::new();
+        let alone = colored && has_reflections(scene) && options.paths.bounces == 0;
+        let note = "light of surfaces on each other is not followed; --bounces 4 follows it";
+        return alone.then(|| note.to_owned()).into_iter().collect();
     }
     let sky = scene.sky.is_some().then(|| "the sky is not there".to_owned());
     let notes = shadow_note(scene, options.coloring).into_iter().chain(sky);
@@ -196,7 +218,7 @@ pub fn shadow_note(scene: &Scene, coloring: Coloring) -> Option<String> {
 /// What drew it, and why: "apparent shading on the CPU, 12 triangles cut into 96 for 0.25 px".
 pub fn method_in_words(options: &Options, report: &Report, why: Option<&str>) -> String {
     let why = why.map_or_else(String::new, |why| format!(" ({why})"));
-    match (report.rays, options.raster) {
+    match (&report.rays, options.raster) {
         (Some(rays), _) => {
             let Count { primary, shadow, path, .. } = rays.count;
             let mut words = format!(
@@ -209,7 +231,8 @@ pub fn method_in_words(options: &Options, report: &Report, why: Option<&str>) ->
             }
             if options.paths.bounces > 0 {
                 let bounces = options.paths.bounces;
-                words.push_str(&format!(", {} of paths of {bounces} reflections", count_in_words(path)));
+                let s = if bounces == 1 { "" } else { "s" };
+                words.push_str(&format!(", {} of paths of {bounces} reflection{s}", count_in_words(path)));
             }
             if let Some(noise) = rays.noise {
                 words.push_str(&format!(", noise {:.2} %", 100.0 * noise));

@@ -54,7 +54,7 @@ const SCENES: [Builtin; 12] = [
     },
     Builtin {
         name: "box",
-        about: "a box lit by a glowing cube that flies through it at 0.8c, and mirrored in a ball: light of bodies on each other",
+        about: "a box lit by a glowing cube that flies through it at 0.5c, and mirrored in a ball: light of bodies on each other",
         toml: include_str!("../../assets/box.toml"),
     },
     Builtin {

@@ -24,10 +24,10 @@ impl std::fmt::Display for Spacetime {
         match self {
             Self::Flat => f.write_str("flat spacetime"),
             Self::Kerr(hole) if hole.spin() == 0.0 => {
-                write!(f, "Schwarzschild spacetime (M = {})", hole.mass())
+                write!(f, "Schwarzschild spacetime (M = {:?})", hole.mass())
             }
             Self::Kerr(hole) => {
-                write!(f, "Kerr spacetime (M = {}, a = {} M)", hole.mass(), hole.spin() / hole.mass())
+                write!(f, "Kerr spacetime (M = {:?}, a = {} M)", hole.mass(), hole.spin() / hole.mass())
             }
         }
     }

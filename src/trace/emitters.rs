@@ -10,7 +10,7 @@ pub(super) struct Emitters {
     /// Shares up to each, the last of them 1.
     sums: Vec<f64>,
     /// By target and leaf: the density a unit of area is chosen with.
-    bright: Vec<Vec<f32>>,
+    bright: Vec<Vec<f64>>,
 }
 
 struct Emitter {
@@ -34,7 +34,7 @@ const MOST: usize = 2_000_000;
 impl Emitters {
     pub fn new(targets: &[Target], shading: &SeenShading<'_>) -> Self {
         let (mut triangles, mut sums, mut whole) = (Vec::new(), Vec::new(), 0.0);
-        let mut bright: Vec<Vec<f32>> = targets.iter().map(|_| Vec::new()).collect();
+        let mut bright: Vec<Vec<f64>> = targets.iter().map(|_| Vec::new()).collect();
         for (index, target) in targets.iter().enumerate() {
             let shines = |leaf: &super::tree::Leaf| {
                 let face = leaf.face as usize;
@@ -52,14 +52,14 @@ impl Emitters {
                     continue;
                 }
                 bright[index].resize(target.tree.leaves.len(), 0.0);
-                bright[index][number] = brightness as f32;
+                bright[index][number] = brightness;
                 whole += area * brightness;
                 triangles.push(Emitter { target: index, leaf: number as u32 });
                 sums.push(whole);
             }
         }
         sums.iter_mut().for_each(|sum| *sum /= whole);
-        bright.iter_mut().flatten().for_each(|b| *b = (f64::from(*b) / whole) as f32);
+        bright.iter_mut().flatten().for_each(|b| *b /= whole);
         Self { triangles, sums, bright }
     }
 
@@ -79,7 +79,7 @@ impl Emitters {
             // From behind, a side of a closed body is hidden; from the front it counts by its angle.
             let facing = -(b - a).cross(c - a).dot(way);
             let counts = if facing > 0.0 { facing } else { -HIDDEN * facing };
-            whole += f64::from(self.bright[of][leaf as usize]) * counts / way.length().powi(3);
+            whole += self.bright[of][leaf as usize] * counts / way.length().powi(3);
             shares.sums.push(whole);
         }
         if whole > 0.0 && whole.is_finite() {
@@ -106,7 +106,7 @@ impl Emitters {
 
     /// The density a point of a triangle is chosen with, by its area at rest; 0 of what does not shine.
     pub fn density(&self, targets: &[Target], shares: &Shares, target: usize, leaf: u32) -> f64 {
-        let bright = self.bright[target].get(leaf as usize).map_or(0.0, |b| f64::from(*b));
+        let bright = self.bright[target].get(leaf as usize).copied().unwrap_or(0.0);
         if bright == 0.0 || shares.sums.is_empty() {
             return bright;
         }

@@ -34,7 +34,7 @@ use path::World;
 use rayon::prelude::*;
 use stage::Stage;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use terrell_geodesic::{Spacetime, Wide};
 use tile::{Job, SIDE, Tile};
 use tree::Tree;
@@ -54,13 +54,19 @@ pub struct Look<'a> {
 }
 
 /// What was done.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Traced {
     /// How many rays there were.
     pub count: Count,
+    /// Rays from what is seen to each light, and how many of them something stood in the way of.
+    pub to_lights: Vec<[u64; 2]>,
     /// What pixels are off by, by the chance of paths and of samples, of their brightness: root mean square. None where no
     /// path was followed, or the samples cannot be halved.
     pub noise: Option<f64>,
+}
+
+fn tally(shading: &SeenShading<'_>) -> Vec<[AtomicU64; 2]> {
+    (0..shading.lights()).map(|_| Default::default()).collect()
 }
 
 /// How often progress is told of.
@@ -134,7 +140,10 @@ impl Tracer {
         let world_from_observer = || camera.observer.observer_from_world::<Wide>().inverse().rounded();
         let sky = scene.sky.as_ref().map(|sky| (sky, world_from_observer()));
         let vectors = self.vectors;
-        let job = Job { stage: &stage, lens, shading, sky, samples, vectors, world: world.as_ref() };
+        let tally = tally(shading);
+        let to_lights = &tally[..];
+        let world = world.as_ref();
+        let job = Job { stage: &stage, lens, shading, sky, samples, vectors, to_lights, world };
         let all = samples.len();
         let passes = if follows { PASSES.min(all) } else { 1 };
         let mut traced = Traced::default();
@@ -155,6 +164,8 @@ impl Tracer {
             }
         }
         traced.noise = noise(&half, &film.color);
+        traced.to_lights =
+            tally.iter().map(|light| light.each_ref().map(|n| n.load(Ordering::Relaxed))).collect();
         traced
     }
 
@@ -169,7 +180,9 @@ impl Tracer {
         let stage = self.stage(scene, camera, shading.lights() > 0);
         let lens = &camera.lens;
         let vectors = self.vectors;
-        let job = Job { stage: &stage, lens, shading, sky: None, samples, vectors, world: None };
+        let tally = tally(shading);
+        let to_lights = &tally[..];
+        let job = Job { stage: &stage, lens, shading, sky: None, samples, vectors, to_lights, world: None };
         (0..camera.lens.height().div_ceil(SIDE))
             .into_par_iter()
             .map_init(Tile::default, |tile, band| tile.cast_band(&job, band * SIDE))
@@ -214,7 +227,7 @@ impl Tracer {
                 count
             })
             .reduce(Count::default, Count::with);
-        Traced { count, noise: None }
+        Traced { count, ..Traced::default() }
     }
 
     fn stage(&self, scene: &Scene, camera: &Camera, lit: bool) -> Stage {

@@ -6,7 +6,7 @@ use super::stage::{Stage, Way};
 use crate::color::Coloring;
 use crate::light::gloss::{self, Chosen};
 use crate::light::{Approach, Facet, Point, SeenShading, SurfaceLight, Trail};
-use crate::scene::Colors;
+use crate::scene::{Colors, Gloss};
 use glam::DVec3;
 use terrell_geodesic::{FourVector, Rest};
 
@@ -29,6 +29,8 @@ pub(super) struct Vertex<'a> {
     pub point: Point,
     pub colors: Colors,
     pub surface: SurfaceLight<'a>,
+    /// How it reflects.
+    pub gloss: Gloss,
     /// From there to the observer.
     pub doppler: f64,
 }
@@ -54,6 +56,10 @@ pub(super) struct Scratch {
 /// Rays end so much before the surface they are to reach.
 const BEFORE: f64 = 1e-9;
 
+/// As smooth as this at most are surfaces that are seen from others that are no mirrors: light a mirror throws onto a wall is
+/// found by chance only if it is spread a little (A. Kaplanyan and C. Dachsbacher 2013).
+const CAUSTIC: f32 = 0.25;
+
 /// What is left of light that is not followed any further.
 const FAINT: f64 = 1e-6;
 
@@ -63,9 +69,9 @@ impl<'a> World<'a> {
         let mut trail = Trail::new(self.coloring, random.unit());
         let mut sum = [0.0; 3];
         let mut add = |light: [f64; 3], by: f64| sum = [0, 1, 2].map(|c| sum[c] + light[c] * by);
-        let mut here = first;
+        let (mut here, mut matt) = (first, false);
         for _ in 0..self.paths.bounces {
-            let (point, gloss) = (here.point, here.surface.gloss());
+            let (point, gloss) = (here.point, &here.gloss);
             let base = here.colors.base;
             self.emitters.seen_from(self.stage, here.target, point.event(), &mut scratch.shares);
             self.add_emitter(&here, &mut trail, random, scratch, &mut add);
@@ -75,7 +81,8 @@ impl<'a> World<'a> {
             if trail.strength() < FAINT {
                 break;
             }
-            let Some(next) = self.meet(&here, &chosen, scratch) else {
+            matt |= chosen.density.is_some();
+            let Some(next) = self.meet(&here, &chosen, matt, scratch) else {
                 // Light from everywhere.
                 for light in 0..self.shading.lights() {
                     let body = self.stage.targets[here.target].body;
@@ -145,7 +152,7 @@ impl<'a> World<'a> {
         let to_light = back.xyz().normalize_or_zero();
         // ν here over ν there.
         let doppler = -back.t / way.length();
-        let (base, gloss) = (at.colors.base, at.surface.gloss());
+        let (base, gloss) = (at.colors.base, &at.gloss);
         let factors = gloss::scattered(base, gloss, at.point.normal, to_light, at.point.to_eye);
         if factors == [0.0; 3] || !(doppler > 0.0 && doppler.is_finite()) {
             return;
@@ -194,7 +201,7 @@ impl<'a> World<'a> {
         for light in 0..self.shading.lights() {
             let Some(approach) = self.shading.approach(body, light, &at.point) else { continue };
             let Some(lighting) = self.shading.arriving(body, light, &at.point, None) else { continue };
-            let (base, gloss) = (at.colors.base, at.surface.gloss());
+            let (base, gloss) = (at.colors.base, &at.gloss);
             let factors = gloss::reflected(base, gloss, at.point.normal, lighting.to_light, at.point.to_eye);
             if factors == [0.0; 3] || !self.is_free(at, &approach, scratch) {
                 continue;
@@ -214,8 +221,14 @@ impl<'a> World<'a> {
         !targets.any(|(index, target)| self.stage.ray(&way, index, target).is_blocked(&target.tree, stack))
     }
 
-    /// The nearest surface in a direction.
-    fn meet(&self, from: &Vertex<'a>, chosen: &Chosen, scratch: &mut Scratch) -> Option<Vertex<'a>> {
+    /// The nearest surface in a direction; `matt` if the path has met one that is no mirror.
+    fn meet(
+        &self,
+        from: &Vertex<'a>,
+        chosen: &Chosen,
+        matt: bool,
+        scratch: &mut Scratch,
+    ) -> Option<Vertex<'a>> {
         scratch.rays += 1;
         let back = FourVector::seen_from(chosen.to_light);
         let event = from.point.event();
@@ -236,13 +249,17 @@ impl<'a> World<'a> {
         let facet =
             Facet::new(&target.mesh, leaf.face as usize, leaf.corners.map(|c| target.map.offset_rest(c)));
         let (at, to_eye) = (event.xyz(), -back.xyz().normalize_or(DVec3::Z));
+        let surface = self.shading.surface(target.body, target.mesh.material_index(leaf.face as usize));
+        let gloss = *surface.gloss();
+        let roughness = if matt { gloss.roughness.max(CAUSTIC) } else { gloss.roughness };
         Some(Vertex {
             target: index,
             leaf: hit.leaf,
             face: leaf.face,
             point: Point::seen_from(event, to_eye, facet.normal(), facet.normal_at(at)),
             colors: facet.colors(at, || [back.xyz(); 3]),
-            surface: self.shading.surface(target.body, target.mesh.material_index(leaf.face as usize)),
+            surface,
+            gloss: Gloss { roughness, ..gloss },
             // ν of K is 1 where it comes from.
             doppler: from.doppler / -back.t,
         })

@@ -9,6 +9,7 @@ use crate::light::{Facet, Point, SeenShading};
 use crate::scene::{Lens, Sky};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 use terrell_geodesic::{FourVector, Lorentz, Observer};
 
 /// Pixels of a tile's side.
@@ -116,6 +117,8 @@ pub(super) struct Job<'a> {
     pub samples: &'a [[f64; 2]],
     /// Whether AVX2 may be used.
     pub vectors: bool,
+    /// Rays to each light, and how many of them are blocked.
+    pub to_lights: &'a [[AtomicU64; 2]],
     /// Where light of surfaces on each other is followed.
     pub world: Option<&'a World<'a>>,
 }
@@ -281,14 +284,19 @@ impl Tile {
                 self.from.push(*number);
             }
             self.count.shadow += self.ways.len() as u64;
+            let mut all_blocked = 0;
             let numbers = self.from.chunks(PACKET);
             for (ways, numbers) in self.ways.chunks(PACKET).zip(numbers) {
                 let blocked = job.stage.blocked(ways, &mut self.packet, job.vectors);
-                self.count.blocked += u64::from(blocked.count_ones());
+                all_blocked += u64::from(blocked.count_ones());
                 for (i, number) in numbers.iter().enumerate() {
                     self.lit[light] &= !(u64::from(blocked >> i & 1) << number);
                 }
             }
+            self.count.blocked += all_blocked;
+            let [asked, blocked] = &job.to_lights[light];
+            asked.fetch_add(self.ways.len() as u64, Ordering::Relaxed);
+            blocked.fetch_add(all_blocked, Ordering::Relaxed);
         }
     }
 
@@ -335,6 +343,7 @@ impl Tile {
                     point: facet.point(at),
                     colors: facet.colors(at, sights),
                     surface: job.shading.surface(target.body, material),
+                    gloss: *job.shading.surface(target.body, material).gloss(),
                     doppler,
                 };
                 let pixel = u64::from(self.top) * u64::from(job.lens.width()) + sight.pixel as u64;

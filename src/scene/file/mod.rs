@@ -53,8 +53,8 @@ pub fn parse_scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             bodies.push(body);
         }
     }
-    if bodies.is_empty() {
-        return Err(source.fault(None, "the scene has no [[body]], so there is nothing to see"));
+    if bodies.is_empty() && file.sky.is_none() {
+        return Err(source.fault(None, "the scene has no [[body]] and no [sky], so there is nothing to see"));
     }
     let view = match &file.camera {
         Some(table) => {

@@ -32,8 +32,13 @@ pub(super) fn read_spacetime(source: &Source<'_>, table: &SpacetimeTable) -> Res
         None => 1.0,
         Some(place) => match *place.get_ref() {
             // Beyond, powers of it leave the range of f64.
-            mass if (1e-60..=1e60).contains(&mass) => mass,
-            mass => return Err(source.at(place, format!("mass = {mass:e} must lie between 1e-60 and 1e60"))),
+            mass if (1e-9..=1e9).contains(&mass) => mass,
+            mass => return Err(source.at(
+                place,
+                format!(
+                    "mass = {mass:e} must lie between 1e-9 and 1e9; choose the unit of length so that it does"
+                ),
+            )),
         },
     };
     let spin = match (&table.spin, metric) {
