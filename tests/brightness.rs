@@ -39,7 +39,7 @@ fn spectral_is_usual_and_all_is_told() {
     let lit = json(&["render", "sunlit", SMALL], here);
     assert_eq!(lit["lights"][0]["kind"], "distant");
     assert_eq!(lit["lights"][1]["kind"], "ambient");
-    assert_eq!(lit["notes"], serde_json::json!([]), "lights at infinity cast shadows on a ball itself only");
+    assert_eq!(lit["notes"], serde_json::json!([]), "nothing of it is left out");
 }
 
 /// White-hot ahead turns blue-white, behind it red: at the bottom of the picture what comes, at the top what goes.

@@ -15,7 +15,7 @@ mod tables;
 mod trail;
 
 pub use facet::Facet;
-pub(crate) use facet::clamped;
+pub(crate) use facet::{clamped, owns_boundary};
 pub use point::Point;
 pub(crate) use seen::SurfaceLight;
 pub use seen::{Approach, SeenShading};

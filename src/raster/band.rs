@@ -1,8 +1,8 @@
 use super::bins::{Binned, Bins};
-use super::triangle::{HalfPlane, Linear, Planes, Surface, owns_boundary};
+use super::triangle::{HalfPlane, Linear, Planes, Surface};
 use super::{BAND, Drawable};
 use crate::film::{Rows, Samples};
-use crate::light::{DopplerAt, Facet, SeenShading, clamped};
+use crate::light::{DopplerAt, Facet, SeenShading, clamped, owns_boundary};
 use crate::relativity::RestSky;
 use crate::scene::{Lens, Projection};
 use glam::{DVec2, DVec3};

@@ -1,3 +1,4 @@
+use crate::light::owns_boundary;
 use crate::relativity::{ApparentMap, RestSky};
 use glam::{DVec2, DVec3};
 
@@ -91,18 +92,6 @@ impl Surface {
     #[inline]
     pub fn nearness(&self, v: DVec3, length: f64, along: f64) -> f64 {
         self.clamped(self.across.dot(v) + self.along * along, length)
-    }
-}
-
-/// Whether a direction *on* a plane belongs to this side: of the two triangles at an edge, one.
-#[inline]
-pub(super) fn owns_boundary(m: DVec3) -> bool {
-    if m.x != 0.0 {
-        m.x > 0.0
-    } else if m.y != 0.0 {
-        m.y > 0.0
-    } else {
-        m.z > 0.0
     }
 }
 

@@ -5,6 +5,7 @@ use super::lanes::Lanes;
 use super::lanes::x86;
 use super::origin::Origin;
 use super::tree::{Leaf, Node, Tree};
+use crate::light::owns_boundary;
 use glam::DVec3;
 
 /// The most rays of a beam.
@@ -274,7 +275,7 @@ impl Beam {
             let middle = m.x + (m.y * u0 + m.z * v0);
             // By more than f32 leaves over.
             let most = middle + (m.y.abs() * half_u + m.z.abs() * half_v) * 1.000_001;
-            let least = if owns(m) { 0.0 } else { f32::from_bits(1) };
+            let least = if owns_boundary(m) { 0.0 } else { f32::from_bits(1) };
             (most >= 0.0).then_some(Edge { function: [middle as f32, m.y as f32, m.z as f32], least })
         };
         let edges = [plane(opposite_a)?, plane(c.cross(a))?, plane(a.cross(b))?];
@@ -375,18 +376,6 @@ fn is_before(new: (f64, u32), old: (f64, u32)) -> bool {
 
 /// Nearer to each other, relative, two surfaces are in one place: what f64 leaves over of a plane seen at an angle.
 pub(super) const SAME: f64 = 1e-12;
-
-/// Of two triangles at an edge, one owns it.
-#[inline(always)]
-pub(super) fn owns(m: DVec3) -> bool {
-    if m.x != 0.0 {
-        m.x > 0.0
-    } else if m.y != 0.0 {
-        m.y > 0.0
-    } else {
-        m.z > 0.0
-    }
-}
 
 /// Far away, lengths are counted in units of the distance, so that squares of them stay within f32.
 #[inline(always)]

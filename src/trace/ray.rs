@@ -1,8 +1,9 @@
 //! One ray, wherever it comes from.
 
-use super::beam::{inverse_unit, owns};
+use super::beam::inverse_unit;
 use super::origin::Origin;
 use super::tree::{Leaf, Node, Tree};
+use crate::light::owns_boundary;
 use glam::DVec3;
 
 /// A ray in the rest frame of a body: origin + s·direction.
@@ -110,7 +111,7 @@ pub(super) fn meet([a, b, c]: [DVec3; 3], direction: DVec3) -> Option<f64> {
     let inside = planes.iter().all(|plane| {
         let plane = *plane * flip;
         let e = plane.dot(direction);
-        e > 0.0 || (e == 0.0 && owns(plane))
+        e > 0.0 || (e == 0.0 && owns_boundary(plane))
     });
     if !inside || volume == 0.0 {
         return None;
