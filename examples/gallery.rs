@@ -52,8 +52,8 @@ const PICTURES: &[(&str, &[&str])] = &[
     // Rays.
     ("shadow_rest.png", &["render", "shadow", "--beta=0.001", SIZE, SMOOTH]),
     ("shadow.png", &["render", "shadow", SIZE, SMOOTH]),
-    ("box_rest.png", &["render", "box", "--beta=0", SIZE, "--samples=256"]),
-    ("box.png", &["render", "box", SIZE, "--samples=256"]),
+    ("box_rest.png", &["render", "box", "--beta=0", SIZE, "--samples=100"]),
+    ("box.png", &["render", "box", SIZE, "--samples=100"]),
     // Light.
     ("cube.png", &["render", "cube", SIZE, SMOOTH]),
     ("hot_rest.png", &["render", "hot", "--beta=0", SIZE, SMOOTH, "--legend"]),

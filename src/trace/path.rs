@@ -58,7 +58,7 @@ const BEFORE: f64 = 1e-9;
 
 /// As smooth as this at most are surfaces that are seen from others that are no mirrors: light a mirror throws onto a wall is
 /// found by chance only if it is spread a little (A. Kaplanyan and C. Dachsbacher 2013).
-const CAUSTIC: f32 = 0.25;
+const CAUSTIC: f32 = 0.5;
 
 /// What is left of light that is not followed any further.
 const FAINT: f64 = 1e-6;
