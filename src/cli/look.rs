@@ -1,6 +1,6 @@
 use super::Fault;
 use super::source;
-use super::values::{count, number, size};
+use super::values::{count, number, size, when};
 use super::velocity::VelocityFlags;
 use clap::{Args, ValueEnum};
 use terrell::color::Coloring;
@@ -32,6 +32,24 @@ pub struct SceneFlags {
     /// Field of view in degrees: vertical (pinhole, fisheye)
     #[arg(long, value_name = "DEG", value_parser = number)]
     fov: Option<f64>,
+}
+
+/// When a picture is taken.
+#[derive(Args)]
+pub struct MomentFlags {
+    /// World time of the picture; a moving camera goes along its world line
+    #[arg(long, value_name = "T", value_parser = number, conflicts_with = "when")]
+    time: Option<f64>,
+    /// Take the picture when a body appears abreast: "nearest BODY"
+    #[arg(long, value_name = "\"nearest BODY\"", value_parser = when)]
+    when: Option<String>,
+}
+
+impl MomentFlags {
+    /// Sets a scene's camera to the moment asked for.
+    pub fn set(&self, scene: &mut Scene) -> Result<(), Fault> {
+        source::set_moment(scene, self.time, self.when.as_deref())
+    }
 }
 
 /// How a scene is looked at: what pictures and films have in common.

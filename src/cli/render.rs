@@ -1,10 +1,8 @@
 use super::Fault;
 use super::drawing::{self, DrawingFlags};
-use super::look::LookFlags;
+use super::look::{LookFlags, MomentFlags};
 use super::report::{ReportFlags, check_target};
-use super::source;
 use super::summary;
-use super::values::{number, when};
 use clap::Args;
 use serde_json::json;
 use std::io::IsTerminal;
@@ -38,12 +36,8 @@ pub struct Render {
     output: Option<PathBuf>,
     #[command(flatten)]
     look: LookFlags,
-    /// World time of the picture; a moving camera goes along its world line
-    #[arg(long, value_name = "T", value_parser = number, conflicts_with = "when")]
-    time: Option<f64>,
-    /// Take the picture when a body appears abreast: "nearest BODY"
-    #[arg(long, value_name = "\"nearest BODY\"", value_parser = when)]
-    when: Option<String>,
+    #[command(flatten)]
+    moment: MomentFlags,
     #[command(flatten)]
     drawing: DrawingFlags,
     #[command(flatten)]
@@ -117,7 +111,7 @@ impl Render {
             .look
             .scene
             .open(&self.scene, self.look.scene.velocity.speed()?, |view| self.look.set_lens(view))?;
-        source::set_moment(&mut scene, self.time, self.when.as_deref())?;
+        self.moment.set(&mut scene)?;
         Ok(scene)
     }
 }

@@ -11,6 +11,30 @@ pub(crate) fn reflected(
     to_light: DVec3,
     to_eye: DVec3,
 ) -> [f64; 3] {
+    reflected_by(true, base, gloss, normal, to_light, to_eye)
+}
+
+/// As [`reflected`], without the one direction of a mirror.
+pub(crate) fn scattered(
+    base: [f32; 3],
+    gloss: &Gloss,
+    normal: DVec3,
+    to_light: DVec3,
+    to_eye: DVec3,
+) -> [f64; 3] {
+    reflected_by(!gloss.is_mirror(), base, gloss, normal, to_light, to_eye)
+}
+
+/// Evenly, and by the lobe if that counts.
+#[inline]
+fn reflected_by(
+    lobe: bool,
+    base: [f32; 3],
+    gloss: &Gloss,
+    normal: DVec3,
+    to_light: DVec3,
+    to_eye: DVec3,
+) -> [f64; 3] {
     let cosine = normal.dot(to_light);
     if cosine <= 0.0 {
         return [0.0; 3];
@@ -24,7 +48,7 @@ pub(crate) fn reflected(
     let cos_eye = normal.dot(to_eye).max(1e-4);
     let half = (to_light + to_eye).normalize_or(normal);
     let square = alpha(gloss) * alpha(gloss);
-    let distribution = distribution(gloss, normal.dot(half));
+    let distribution = if lobe { distribution(gloss, normal.dot(half)) } else { 0.0 };
     let hidden = |c: f64| (square + (1.0 - square) * c * c).sqrt();
     let visibility = 0.5 / (cosine * hidden(cos_eye) + cos_eye * hidden(cosine));
     let grazing = (1.0 - to_eye.dot(half).clamp(0.0, 1.0)).powi(5);
@@ -118,27 +142,6 @@ pub(crate) fn density(base: [f32; 3], gloss: &Gloss, normal: DVec3, to_light: DV
     let half = (to_light + to_eye).normalize_or(normal);
     let cos_half = normal.dot(half);
     even + share * distribution(gloss, cos_half) * cos_half / (4.0 * to_eye.dot(half)).max(1e-9)
-}
-
-/// As [`reflected`], without the one direction of a mirror.
-pub(crate) fn scattered(
-    base: [f32; 3],
-    gloss: &Gloss,
-    normal: DVec3,
-    to_light: DVec3,
-    to_eye: DVec3,
-) -> [f64; 3] {
-    if !gloss.is_mirror() || gloss.is_even() {
-        return reflected(base, gloss, normal, to_light, to_eye);
-    }
-    let half = (to_light + to_eye).normalize_or(normal);
-    let grazing = (1.0 - to_eye.dot(half).clamp(0.0, 1.0)).powi(5);
-    let cosine = normal.dot(to_light).max(0.0);
-    base.map(f64::from).map(|b| {
-        let upright = at_right_angles(b, gloss);
-        let fresnel = upright + (1.0 - upright) * grazing;
-        (1.0 - f64::from(gloss.metallic)) * (1.0 - fresnel) * b / PI * cosine
-    })
 }
 
 fn alpha(gloss: &Gloss) -> f64 {

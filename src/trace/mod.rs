@@ -133,9 +133,7 @@ impl Tracer {
         let follows = paths.bounces > 0;
         let stage = self.stage(scene, camera, shading.lights() > 0 || follows);
         let emitters = follows.then(|| Emitters::new(&stage.targets, shading));
-        let coloring = shading.coloring();
-        let world =
-            emitters.as_ref().map(|emitters| World { stage: &stage, shading, emitters, coloring, paths });
+        let world = emitters.as_ref().map(|emitters| World { stage: &stage, shading, emitters, paths });
         let lens = &camera.lens;
         let world_from_observer = || camera.observer.observer_from_world::<Wide>().inverse().rounded();
         let sky = scene.sky.as_ref().map(|sky| (sky, world_from_observer()));

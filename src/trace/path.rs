@@ -3,9 +3,8 @@
 use super::emitters::{Emitters, Shares};
 use super::random::Random;
 use super::stage::{Stage, Way};
-use crate::color::Coloring;
 use crate::light::gloss::{self, Chosen};
-use crate::light::{Approach, Facet, Point, SeenShading, SurfaceLight, Trail};
+use crate::light::{Point, SeenShading, SurfaceLight, Trail};
 use crate::scene::{Colors, Gloss};
 use glam::DVec3;
 use terrell_geodesic::{FourVector, Rest};
@@ -41,7 +40,6 @@ pub(super) struct World<'a> {
     pub stage: &'a Stage,
     pub shading: &'a SeenShading<'a>,
     pub emitters: &'a Emitters,
-    pub coloring: Coloring,
     pub paths: Paths,
 }
 
@@ -66,7 +64,7 @@ const FAINT: f64 = 1e-6;
 impl<'a> World<'a> {
     /// Linear sRGB of what reaches a surface from others, and is reflected to the observer; of one path.
     pub fn indirect(&self, first: Vertex<'a>, random: &mut Random, scratch: &mut Scratch) -> [f64; 3] {
-        let mut trail = Trail::new(self.coloring, random.unit());
+        let mut trail = Trail::new(self.shading.coloring(), random.unit());
         let mut sum = [0.0; 3];
         let mut add = |light: [f64; 3], by: f64| sum = [0, 1, 2].map(|c| sum[c] + light[c] * by);
         let (mut here, mut matt) = (first, false);
@@ -103,8 +101,7 @@ impl<'a> World<'a> {
     }
 
     /// The surface's own light at the end of a ray whose direction was chosen; shared with what
-    /// [`add_emitter`](Self::add_emitter) gives by which of the two would have found it more often (E. Veach 1997, the
-    /// power heuristic).
+    /// [`add_emitter`](Self::add_emitter) gives by which of the two would have found it more often.
     fn add_own(
         &self,
         from: &Vertex<'a>,
@@ -123,7 +120,7 @@ impl<'a> World<'a> {
             let way = at.point.event() - self.stage.between(at.target, from.target) * from.point.event();
             let other = self.emitters.density(&self.stage.targets, shares, at.target, at.leaf)
                 * per_solid_angle(way.xyz(), normal, from.doppler / at.doppler);
-            density * density / (density * density + other * other)
+            power_share(density, other)
         });
         add(trail.seen(&source), share);
     }
@@ -168,22 +165,20 @@ impl<'a> World<'a> {
         if !(density > 0.0 && density.is_finite()) {
             return;
         }
-        let approach = Approach { back, ends: true };
-        if !self.is_free(at, &approach, scratch) {
+        if !self.is_free(at, back, true, scratch) {
             return;
         }
-        let facet =
-            Facet::new(&target.mesh, leaf.face as usize, leaf.corners.map(|c| target.map.offset_rest(c)));
+        let facet = target.facet(spot.leaf);
         let place = target.map.offset_rest(spot.x_rest);
         let point =
             Point::seen_from(event + back_there, -way.normalize_or_zero(), facing, facet.normal_at(place));
-        let surface = self.shading.surface(target.body, target.mesh.material_index(leaf.face as usize));
+        let surface = self.shading.surface(target.body, target.mesh.material_index(facet.face()));
         let colors = facet.colors(place, || [way; 3]);
         let Some(source) = surface.source(colors, point.normal.dot(point.to_eye), at.doppler * doppler)
         else {
             return;
         };
-        let share = density * density / (density * density + other * other);
+        let share = power_share(density, other);
         trail.meets(at.doppler, factors.map(|f| f / density), at.surface.beyond());
         add(trail.seen(&source), share);
         trail.leave();
@@ -203,7 +198,7 @@ impl<'a> World<'a> {
             let Some(lighting) = self.shading.arriving(body, light, &at.point, None) else { continue };
             let (base, gloss) = (at.colors.base, &at.gloss);
             let factors = gloss::reflected(base, gloss, at.point.normal, lighting.to_light, at.point.to_eye);
-            if factors == [0.0; 3] || !self.is_free(at, &approach, scratch) {
+            if factors == [0.0; 3] || !self.is_free(at, approach.back, approach.ends, scratch) {
                 continue;
             }
             trail.meets(at.doppler, factors, at.surface.beyond());
@@ -212,10 +207,11 @@ impl<'a> World<'a> {
         }
     }
 
-    fn is_free(&self, at: &Vertex<'a>, approach: &Approach, scratch: &mut Scratch) -> bool {
+    /// Whether nothing stands in a way from a point, which ends where the vector does or nowhere.
+    fn is_free(&self, at: &Vertex<'a>, back: FourVector<Rest>, ends: bool, scratch: &mut Scratch) -> bool {
         scratch.rays += 1;
-        let far = if approach.ends { 1.0 - BEFORE } else { f64::INFINITY };
-        let way = Way { from: at.target, face: at.face, event: at.point.event(), back: approach.back, far };
+        let far = if ends { 1.0 - BEFORE } else { f64::INFINITY };
+        let way = Way { from: at.target, face: at.face, event: at.point.event(), back, far };
         let stack = &mut scratch.stack;
         let mut targets = self.stage.targets.iter().enumerate();
         !targets.any(|(index, target)| self.stage.ray(&way, index, target).is_blocked(&target.tree, stack))
@@ -245,17 +241,15 @@ impl<'a> World<'a> {
         let map = self.stage.between(index, from.target);
         let back = map * back;
         let event = map * event + back * hit.at;
-        let leaf = &target.tree.leaves[hit.leaf as usize];
-        let facet =
-            Facet::new(&target.mesh, leaf.face as usize, leaf.corners.map(|c| target.map.offset_rest(c)));
+        let facet = target.facet(hit.leaf);
         let (at, to_eye) = (event.xyz(), -back.xyz().normalize_or(DVec3::Z));
-        let surface = self.shading.surface(target.body, target.mesh.material_index(leaf.face as usize));
+        let surface = self.shading.surface(target.body, target.mesh.material_index(facet.face()));
         let gloss = *surface.gloss();
         let roughness = if matt { gloss.roughness.max(CAUSTIC) } else { gloss.roughness };
         Some(Vertex {
             target: index,
             leaf: hit.leaf,
-            face: leaf.face,
+            face: facet.face() as u32,
             point: Point::seen_from(event, to_eye, facet.normal(), facet.normal_at(at)),
             colors: facet.colors(at, || [back.xyz(); 3]),
             surface,
@@ -264,6 +258,11 @@ impl<'a> World<'a> {
             doppler: from.doppler / -back.t,
         })
     }
+}
+
+/// The share of one of two ways to choose a direction, by their densities (E. Veach 1997, the power heuristic).
+fn power_share(density: f64, other: f64) -> f64 {
+    density * density / (density * density + other * other)
 }
 
 /// Area at rest in the frame of what shines over solid angle where it is seen from: r²/cos θ, and D² for aberration.

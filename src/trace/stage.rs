@@ -2,6 +2,7 @@ use super::origin::Origin;
 use super::packet::{PACKET, Packet};
 use super::ray::Ray;
 use super::tree::Tree;
+use crate::light::Facet;
 use crate::relativity::{ApparentMap, Motion, RestSky};
 use crate::scene::{Camera, Mesh};
 use glam::DVec3;
@@ -65,6 +66,16 @@ impl Outline {
 }
 
 impl Target {
+    /// The triangle of a leaf, from the observer in the rest frame.
+    #[inline]
+    pub fn facet(&self, leaf: u32) -> Facet<'_> {
+        let leaf = &self.tree.leaves[leaf as usize];
+        let [a, b, c] = &leaf.corners;
+        let map = &self.map;
+        let corners = [map.offset_rest(*a), map.offset_rest(*b), map.offset_rest(*c)];
+        Facet::new(&self.mesh, leaf.face as usize, corners)
+    }
+
     /// A line of sight in the rest frame, with the same affine parameter.
     #[inline]
     pub fn rest_direction(&self, v: DVec3, length: f64) -> DVec3 {

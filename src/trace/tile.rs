@@ -336,14 +336,15 @@ impl Tile {
             if let Some(world) = job.world
                 && job.shading.is_lit(target.body, material)
             {
+                let surface = job.shading.surface(target.body, material);
                 let vertex = Vertex {
                     target: sight.target,
                     leaf: sight.leaf,
                     face: facet.face() as u32,
                     point: facet.point(at),
                     colors: facet.colors(at, sights),
-                    surface: job.shading.surface(target.body, material),
-                    gloss: *job.shading.surface(target.body, material).gloss(),
+                    surface,
+                    gloss: *surface.gloss(),
                     doppler,
                 };
                 let pixel = u64::from(self.top) * u64::from(job.lens.width()) + sight.pixel as u64;
@@ -418,10 +419,6 @@ impl Sight {
     #[inline]
     fn meets<'a>(&self, stage: &'a Stage) -> (&'a Target, Facet<'a>, DVec3) {
         let target = &stage.targets[self.target];
-        let leaf = &target.tree.leaves[self.leaf as usize];
-        let [a, b, c] = &leaf.corners;
-        let map = &target.map;
-        let corners = [map.offset_rest(*a), map.offset_rest(*b), map.offset_rest(*c)];
-        (target, Facet::new(&target.mesh, leaf.face as usize, corners), self.rest / self.nearness)
+        (target, target.facet(self.leaf), self.rest / self.nearness)
     }
 }

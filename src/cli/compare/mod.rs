@@ -6,10 +6,9 @@ mod table;
 mod told;
 
 use super::Fault;
-use super::look::LookFlags;
+use super::look::{LookFlags, MomentFlags};
 use super::report::ReportFlags;
-use super::values::{number, when};
-use super::{source, summary};
+use super::summary;
 use clap::Args;
 use folders::{Folders, check_folder, folder_names};
 use methods::{WAYS, Way, corners};
@@ -79,12 +78,8 @@ pub struct Compare {
     markdown: bool,
     #[command(flatten)]
     look: LookFlags,
-    /// World time of the picture; a moving camera goes along its world line
-    #[arg(long, value_name = "T", value_parser = number, conflicts_with = "when")]
-    time: Option<f64>,
-    /// Take the picture when a body appears abreast: "nearest BODY"
-    #[arg(long, value_name = "\"nearest BODY\"", value_parser = when)]
-    when: Option<String>,
+    #[command(flatten)]
+    moment: MomentFlags,
     #[command(flatten)]
     report: ReportFlags,
 }
@@ -218,7 +213,7 @@ impl Compare {
                     view.size = [film.width, film.height];
                 }
             })?;
-            source::set_moment(&mut scene, self.time, self.when.as_deref())?;
+            self.moment.set(&mut scene)?;
             Ok(scene)
         };
         names.into_iter().map(open).collect()
