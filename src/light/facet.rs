@@ -1,4 +1,5 @@
 use super::Point;
+use super::point::turned;
 use crate::scene::{Colors, Material, Mesh};
 use glam::DVec3;
 
@@ -55,6 +56,12 @@ impl<'a> Facet<'a> {
     #[inline]
     pub fn point(&self, at: DVec3) -> Point {
         Point::new(at, self.normal(), self.normal_at(at))
+    }
+
+    /// The mesh's normal at a point of its plane that is seen directly: of any length, on the side that is seen.
+    #[inline]
+    pub fn normal_seen(&self, at: DVec3) -> DVec3 {
+        turned(-at, self.normal(), self.normal_at(at))
     }
 
     /// The mesh's normal at a point of its plane, of any length and side.

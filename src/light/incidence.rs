@@ -82,6 +82,26 @@ pub(super) struct Arrival {
 }
 
 impl NearLight {
+    /// From the surface's rest frame to the light's.
+    pub fn lamp_from_rest(&self) -> &Lorentz<Lamp, Rest> {
+        &self.lamp_from_rest
+    }
+
+    /// And back.
+    pub fn rest_from_lamp(&self) -> &Lorentz<Rest, Lamp> {
+        &self.rest_from_lamp
+    }
+
+    /// The observer's event in the light's frame, from the light.
+    pub fn observer(&self) -> DVec3 {
+        self.observer
+    }
+
+    /// Unit vector of the axis, and cosines of the angles where a spot begins to darken and where it is dark.
+    pub fn cone(&self) -> Option<(DVec3, [f64; 2])> {
+        self.cone
+    }
+
     /// None for light that comes from no place.
     pub fn new(light: &Light, body: &Motion, observer: &Tetrad) -> Option<Self> {
         let (position, cone) = match light.kind {

@@ -24,9 +24,8 @@ impl Point {
 
     /// A point at any event, from the observer's, that is seen from the direction `to_eye`, a unit vector.
     pub fn seen_from(event: FourVector<Rest>, to_eye: DVec3, facing: DVec3, normal: DVec3) -> Self {
-        let facing = if facing.dot(to_eye) < 0.0 { -facing } else { facing };
-        let normal = if normal.dot(facing) < 0.0 { -normal } else { normal };
-        let normal = normal.normalize_or(facing.normalize_or(DVec3::Z));
+        let normal = turned(to_eye, facing, normal)
+            .normalize_or(turned(to_eye, facing, facing).normalize_or(DVec3::Z));
         Self { offset: event.xyz(), ago: -event.t, normal, to_eye }
     }
 
@@ -34,4 +33,11 @@ impl Point {
     pub fn event(&self) -> FourVector<Rest> {
         FourVector::from_parts(-self.ago, self.offset)
     }
+}
+
+/// A normal of a surface that lies square to `facing`, on the side that is seen.
+#[inline]
+pub(super) fn turned(to_eye: DVec3, facing: DVec3, normal: DVec3) -> DVec3 {
+    // On the side of `facing`, which is on that of the eye.
+    if (normal.dot(facing) < 0.0) == (facing.dot(to_eye) < 0.0) { normal } else { -normal }
 }

@@ -110,6 +110,21 @@ impl<'a> SeenShading<'a> {
         self.shading.lights.len()
     }
 
+    /// How a light reaches a body.
+    pub(super) fn incidence(&self, body: usize, light: usize) -> &Incidence {
+        &self.shading.bodies[body].incidences[light]
+    }
+
+    /// That of a light at a place, at this moment.
+    pub(super) fn near(&self, body: usize, light: usize) -> Option<&NearLight> {
+        self.near[body][light].as_ref()
+    }
+
+    /// How strong a light is.
+    pub(super) fn strength(&self, light: usize) -> f64 {
+        self.shading.lights[light].light.strength
+    }
+
     /// Whether a light shines from everywhere.
     pub(crate) fn is_ambient(&self, light: usize) -> bool {
         matches!(self.shading.lights[light].light.kind, LightKind::Ambient)

@@ -11,12 +11,12 @@
 //! It finds the point of the surface otherwise than [`raster`](crate::raster) does, and knows shadows; all else is the same.
 
 mod beam;
+mod bundle;
 mod chord;
 mod curved;
 mod emitters;
 mod lanes;
 mod origin;
-mod packet;
 mod path;
 mod random;
 mod ray;

@@ -1,5 +1,4 @@
 use super::origin::Origin;
-use super::packet::{PACKET, Packet};
 use super::ray::Ray;
 use super::tree::Tree;
 use crate::light::Facet;
@@ -26,7 +25,7 @@ pub(super) struct Target {
     pub sky: RestSky,
     pub outline: Outline,
     /// Which of the kinds of motion it has.
-    motion: usize,
+    pub motion: usize,
 }
 
 /// A circle of the observer's sky with the whole body in it: the image of the sphere around it.
@@ -111,21 +110,6 @@ impl Stage {
         };
         let between = if lit { motions.iter().map(between).collect() } else { Vec::new() };
         Self { targets, between }
-    }
-
-    /// Which of some ways to lights, at most [`PACKET`], something stands in: a bit for each.
-    pub fn blocked(&self, ways: &[Way], packet: &mut Packet, vectors: bool) -> u32 {
-        let mut blocked = 0;
-        let all = (1 << ways.len()) - 1;
-        for (index, target) in self.targets.iter().enumerate() {
-            let rays: [Ray<'_>; PACKET] =
-                std::array::from_fn(|i| self.ray(&ways[i.min(ways.len() - 1)], index, target));
-            blocked |= packet.blocked(&rays[..ways.len()], &target.tree, vectors);
-            if blocked == all {
-                break;
-            }
-        }
-        blocked
     }
 
     /// From the rest frame of one target to that of another, both by their indices.

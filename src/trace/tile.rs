@@ -1,11 +1,11 @@
 use super::beam::{Beam, Directed, NONE, RAYS, SAME, facing};
+use super::bundle::Bundle;
 use super::origin::Origin;
-use super::packet::{PACKET, Packet};
 use super::path::{self, Vertex, World};
 use super::random::Random;
-use super::stage::{Stage, Target, Way};
+use super::stage::{Stage, Target};
 use crate::film::Rows;
-use crate::light::{Facet, Point, SeenShading};
+use crate::light::{Facet, Points, SeenShading, Ways};
 use crate::scene::{Lens, Sky};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -19,7 +19,7 @@ pub(super) const SIDE: u32 = 8;
 #[derive(Default)]
 pub(super) struct Tile {
     beam: Beam,
-    packet: Packet,
+    bundle: Bundle,
     paths: path::Scratch,
     top: u32,
     sights: Vec<Sight>,
@@ -28,11 +28,9 @@ pub(super) struct Tile {
     rays: Vec<Directed>,
     /// Of which lines of sight they are.
     numbers: Vec<usize>,
-    /// What of the lines of sight may be lit.
-    points: Vec<(usize, Point)>,
-    ways: Vec<Way>,
-    /// Of which lines of sight they are.
-    from: Vec<usize>,
+    /// What of one body may be lit, and how it is lit.
+    points: Points,
+    ways: Ways,
     lit: Vec<u64>,
     count: Count,
 }
@@ -260,43 +258,52 @@ impl Tile {
             return;
         }
         debug_assert!(self.sights.len() <= RAYS);
-        self.points.clear();
-        for (number, sight) in self.sights.iter().enumerate() {
-            if sight.leaf == NONE {
+        for met in 0..self.met.len() {
+            let index = self.met[met];
+            let target = &job.stage.targets[index];
+            self.gather(job, index);
+            if self.points.count == 0 {
                 continue;
             }
-            let (target, facet, at) = sight.meets(job.stage);
-            if job.shading.is_lit(target.body, target.mesh.material_index(facet.face())) {
-                self.points.push((number, facet.point(at)));
+            for light in 0..lights {
+                let Self { points, ways, bundle, .. } = self;
+                job.shading.ways(target.body, light, points, ways, job.vectors);
+                let mut blocked = bundle.blocked(job.stage, index, points, ways, job.vectors);
+                let [asked, stopped] = [ways.open, blocked].map(|bits| u64::from(bits.count_ones()));
+                while blocked != 0 {
+                    self.lit[light] &= !(1 << self.numbers[blocked.trailing_zeros() as usize]);
+                    blocked &= blocked - 1;
+                }
+                self.count.shadow += asked;
+                self.count.blocked += stopped;
+                let [all_asked, all_stopped] = &job.to_lights[light];
+                all_asked.fetch_add(asked, Ordering::Relaxed);
+                all_stopped.fetch_add(stopped, Ordering::Relaxed);
             }
         }
-        for light in 0..lights {
-            self.ways.clear();
-            self.from.clear();
-            for (number, point) in &self.points {
-                let sight = &self.sights[*number];
-                let target = &job.stage.targets[sight.target];
-                let Some(approach) = job.shading.approach(target.body, light, point) else { continue };
-                let face = target.tree.leaves[sight.leaf as usize].face;
-                let far = if approach.ends { 1.0 } else { f64::INFINITY };
-                let (event, back) = (point.event(), approach.back);
-                self.ways.push(Way { from: sight.target, face, event, back, far });
-                self.from.push(*number);
+    }
+
+    /// Points of one body that may be lit.
+    fn gather(&mut self, job: &Job<'_>, index: usize) {
+        self.points.count = 0;
+        self.numbers.clear();
+        let target = &job.stage.targets[index];
+        // The triangle met last, if it may be lit.
+        let (mut last, mut facet) = (NONE, None);
+        for (number, sight) in self.sights.iter().enumerate() {
+            if sight.leaf == NONE || sight.target != index {
+                continue;
             }
-            self.count.shadow += self.ways.len() as u64;
-            let mut all_blocked = 0;
-            let numbers = self.from.chunks(PACKET);
-            for (ways, numbers) in self.ways.chunks(PACKET).zip(numbers) {
-                let blocked = job.stage.blocked(ways, &mut self.packet, job.vectors);
-                all_blocked += u64::from(blocked.count_ones());
-                for (i, number) in numbers.iter().enumerate() {
-                    self.lit[light] &= !(u64::from(blocked >> i & 1) << number);
-                }
+            if sight.leaf != last {
+                last = sight.leaf;
+                let material = |f: &Facet<'_>| target.mesh.material_index(f.face());
+                let lit = |f: &Facet<'_>| job.shading.is_lit(target.body, material(f));
+                facet = Some(target.facet(last)).filter(lit);
             }
-            self.count.blocked += all_blocked;
-            let [asked, blocked] = &job.to_lights[light];
-            asked.fetch_add(self.ways.len() as u64, Ordering::Relaxed);
-            blocked.fetch_add(all_blocked, Ordering::Relaxed);
+            if let Some(facet) = &facet {
+                self.points.push(facet, sight.rest / sight.nearness);
+                self.numbers.push(number);
+            }
         }
     }
 

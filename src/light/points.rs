@@ -1,0 +1,246 @@
+use super::incidence::{Incidence, NearLight};
+use super::{Facet, SeenShading};
+use glam::DVec3;
+use terrell_geodesic::{FourVector, Rest};
+
+/// The most points at a time.
+pub(crate) const POINTS: usize = 64;
+
+/// Four-vectors side by side, t first: what the processor works out several at a time.
+pub(crate) type Vectors = [[f64; POINTS]; 4];
+
+/// Points of one body's surface that are seen, all in its rest frame.
+#[repr(align(64))]
+pub(crate) struct Points {
+    /// How many there are.
+    pub count: usize,
+    /// Numbers of the triangles they lie on.
+    pub faces: [u32; POINTS],
+    /// From the observer's event to theirs.
+    pub events: Vectors,
+    /// On the side that is seen, of any length.
+    normals: [[f64; POINTS]; 3],
+}
+
+/// Ways from [`Points`] back to one light.
+#[repr(align(64))]
+pub(crate) struct Ways {
+    /// Null vectors into the past, as [`Approach::back`](super::Approach::back); where nothing comes from the light, any.
+    pub backs: Vectors,
+    /// Where something does: a bit for each.
+    pub open: u64,
+    /// Where they end, in units of the vector.
+    pub far: f64,
+}
+
+impl Default for Points {
+    fn default() -> Self {
+        let (faces, normals) = ([0; POINTS], [[0.0; POINTS]; 3]);
+        Self { count: 0, faces, events: [[0.0; POINTS]; 4], normals }
+    }
+}
+
+impl Default for Ways {
+    fn default() -> Self {
+        Self { backs: [[0.0; POINTS]; 4], open: 0, far: f64::INFINITY }
+    }
+}
+
+impl Points {
+    /// One more, which is seen directly.
+    #[inline]
+    pub fn push(&mut self, facet: &Facet<'_>, at: DVec3) {
+        let i = self.count;
+        self.count += 1;
+        self.faces[i] = facet.face() as u32;
+        self.events[0][i] = -at.length();
+        let normal = facet.normal_seen(at);
+        for k in 0..3 {
+            self.events[k + 1][i] = at[k];
+            self.normals[k][i] = normal[k];
+        }
+    }
+
+    /// From the observer's event to that of one of them.
+    pub fn event(&self, i: usize) -> FourVector<Rest> {
+        vector(&self.events, i)
+    }
+}
+
+/// One of them.
+pub(crate) fn vector(of: &Vectors, i: usize) -> FourVector<Rest> {
+    FourVector::new(of[0][i], of[1][i], of[2][i], of[3][i])
+}
+
+/// A component of what a map, by that row of it, makes of vectors.
+#[inline(always)]
+pub(crate) fn component(row: [f64; 4], of: &Vectors) -> [f64; POINTS] {
+    let mut to = [0.0; POINTS];
+    for (i, to) in to.iter_mut().enumerate() {
+        *to = row[0] * of[0][i] + row[1] * of[1][i] + row[2] * of[2][i] + row[3] * of[3][i];
+    }
+    to
+}
+
+impl SeenShading<'_> {
+    /// Ways from points of a body to a light, as [`approach`](Self::approach) has them one by one; with AVX2 if `vectors`
+    /// and there is such.
+    pub(crate) fn ways(&self, body: usize, light: usize, points: &Points, ways: &mut Ways, vectors: bool) {
+        ways.open = 0;
+        match self.incidence(body, light) {
+            Incidence::Distant { to_light, .. } => {
+                ways.far = f64::INFINITY;
+                let back = FourVector::<Rest>::seen_from(*to_light);
+                let components = [back.t, to_light.x, to_light.y, to_light.z];
+                for (to, component) in ways.backs.iter_mut().zip(components) {
+                    to.fill(component);
+                }
+                ways.keep_facing(points, &[true; POINTS]);
+            }
+            Incidence::Near => {
+                ways.far = 1.0;
+                let Some(near) = self.near(body, light) else { return };
+                if self.strength(light) > 0.0 {
+                    near.ways(points, ways, vectors);
+                }
+            }
+            Incidence::Ambient { .. } => {}
+        }
+    }
+}
+
+impl Ways {
+    /// Opens those that come to the side of the surface that is seen, of those that are `possible`.
+    #[inline(always)]
+    fn keep_facing(&mut self, points: &Points, possible: &[bool; POINTS]) {
+        let mut facing = [false; POINTS];
+        let ([_, x, y, z], [a, b, c]) = (&self.backs, &points.normals);
+        for (i, facing) in facing.iter_mut().enumerate() {
+            *facing = possible[i] & (a[i] * x[i] + b[i] * y[i] + c[i] * z[i] > 0.0);
+        }
+        let open = facing[..points.count].iter().rev().fold(0, |bits, is| bits << 1 | u64::from(*is));
+        self.open = open;
+    }
+}
+
+impl NearLight {
+    fn ways(&self, points: &Points, ways: &mut Ways, vectors: bool) {
+        #[cfg(target_arch = "x86_64")]
+        if vectors && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            // SAFETY: the processor has both.
+            unsafe { self.ways_avx2(points, ways) };
+            return;
+        }
+        let _ = vectors;
+        self.ways_with(points, ways);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn ways_avx2(&self, points: &Points, ways: &mut Ways) {
+        self.ways_with(points, ways);
+    }
+
+    /// As [`at`](Self::at), all together.
+    #[inline(always)]
+    fn ways_with(&self, points: &Points, ways: &mut Ways) {
+        // Loops of plain arithmetic, which compilers make vectors of.
+        let rows = self.lamp_from_rest().rows();
+        // From the lamp, in its frame, and how far.
+        let mut way = [[0.0; POINTS]; 4];
+        for k in 1..4 {
+            way[k] = component(rows[k], &points.events);
+            for component in &mut way[k] {
+                *component += self.observer()[k - 1];
+            }
+        }
+        let [distance, x, y, z] = &mut way;
+        for (i, distance) in distance.iter_mut().enumerate() {
+            *distance = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
+        }
+        for (back, row) in ways.backs.iter_mut().zip(self.rest_from_lamp().rows()) {
+            *back = component([-row[0], -row[1], -row[2], -row[3]], &way);
+        }
+        let mut possible = [false; POINTS];
+        for (i, possible) in possible.iter_mut().enumerate() {
+            let doppler = -ways.backs[0][i] / way[0][i];
+            *possible = (doppler > 0.0) & (doppler < f64::INFINITY);
+        }
+        if let Some((axis, [_, dark])) = self.cone() {
+            for (i, possible) in possible.iter_mut().enumerate() {
+                let along = axis.x * way[1][i] + axis.y * way[2][i] + axis.z * way[3][i];
+                *possible &= along > dark * way[0][i];
+            }
+        }
+        ways.keep_facing(points, &possible);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Shading;
+    use super::*;
+    use crate::color::Coloring;
+    use crate::relativity::Motion;
+    use crate::scene::{Body, Light, LightKind, Scene, View, shapes};
+    use crate::spectrum::Spectrum;
+    use terrell_geodesic::{Celerity, Event, Tetrad};
+
+    /// All together, with and without vectors, against one by one; lamps and bodies in motion, spots, light from infinity.
+    #[test]
+    fn ways_are_as_one_by_one() {
+        let motion = |v: f64| Motion {
+            celerity: Celerity::new(DVec3::new(v, 0.2 * v, 0.0)).unwrap(),
+            origin: Event::new(-1.0, 0.5, 4.0, 0.2),
+        };
+        let body = Body::new("ball", shapes::sphere(3), motion(1.0));
+        let mut scene = Scene::new("s", vec![body], View::default());
+        let position = DVec3::new(1.0, -2.0, 0.5);
+        for (kind, speed) in [
+            (LightKind::Point { position }, 0.0),
+            (LightKind::Point { position }, 3.0),
+            (LightKind::Spot { position, direction: DVec3::Y, cone: [1.0, 2.5] }, -0.5),
+            (LightKind::Distant { direction: DVec3::new(0.6, 0.8, 0.0) }, 2.0),
+            (LightKind::Ambient, 0.0),
+        ] {
+            scene.lights.push(Light {
+                name: "l".into(),
+                kind,
+                color: [1.0; 3],
+                spectrum: Spectrum::default(),
+                strength: 1.0,
+                motion: motion(speed),
+            });
+        }
+        let observer = Tetrad::of_world(Event::origin());
+        let shading = Shading::new(&scene, [&observer], Coloring::Geometry).unwrap();
+        let seen = shading.seen_by(&observer);
+        let mesh = &scene.bodies[0].mesh;
+        let (mut points, mut ways) = (Points::default(), Ways::default());
+        let mut all = [0u32; 5];
+        for first in (0..mesh.triangles.len()).step_by(POINTS) {
+            points.count = 0;
+            let facets: Vec<(Facet<'_>, DVec3)> = (first..(first + POINTS).min(mesh.triangles.len()))
+                .map(|face| {
+                    let corners = mesh.corners(face).map(|c| c + DVec3::new(0.3, 5.0, 0.1));
+                    let at = 0.2 * corners[0] + 0.5 * corners[1] + 0.3 * corners[2];
+                    (Facet::new(mesh, face, corners), at)
+                })
+                .collect();
+            facets.iter().for_each(|(facet, at)| points.push(facet, *at));
+            for (light, vectors) in (0..5).flat_map(|l| [(l, false), (l, true)]) {
+                seen.ways(0, light, &points, &mut ways, vectors);
+                for (i, (facet, at)) in facets.iter().enumerate() {
+                    let approach = seen.approach(0, light, &facet.point(*at));
+                    assert_eq!(ways.open >> i & 1 == 1, approach.is_some());
+                    let Some(approach) = approach else { continue };
+                    assert_eq!(approach.ends, ways.far == 1.0);
+                    let off = vector(&ways.backs, i) - approach.back;
+                    assert!(off.xyz().length().max(off.t.abs()) < 1e-14 * approach.back.t.abs());
+                    all[light] += 1;
+                }
+            }
+        }
+        assert!(all[..4].iter().all(|n| *n > 10) && all[4] == 0, "{all:?}");
+    }
+}

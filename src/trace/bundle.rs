@@ -1,0 +1,523 @@
+//! Rays from surfaces to a light, which begin in different points, all those of a tile together.
+
+use super::lanes::Lanes;
+#[cfg(target_arch = "x86_64")]
+use super::lanes::x86;
+use super::ray::Ray;
+use super::stage::{Stage, Target, Way};
+use super::tree::{Leaf, Node, Tree};
+use crate::light::{POINTS, Points, Ways, component, vector};
+use glam::DVec3;
+
+/// Rays that are tested together.
+const GROUP: usize = 8;
+
+/// How many such.
+const GROUPS: usize = POINTS / GROUP;
+
+/// Rays of which is asked only whether anything is in their way.
+///
+/// Boxes are tested by the ranges of all rays' origins and directions first, then by groups of rays up to the first that
+/// may enter; triangles by groups, in f32, by bounds of its rounding. What that leaves is tested in f64.
+#[derive(Default)]
+pub(super) struct Bundle {
+    /// Boxes still to be looked at, and the first group that may enter them.
+    stack: Vec<(u32, usize)>,
+    lanes: InLanes,
+}
+
+/// In the tree's units.
+#[repr(align(64))]
+struct InLanes {
+    origin: [[f32; POINTS]; 3],
+    direction: [[f32; POINTS]; 3],
+    /// 1 over the direction.
+    inverse: [[f32; POINTS]; 3],
+    /// |direction| at most.
+    length: [f32; POINTS],
+    /// Where they end.
+    far: f32,
+    /// What origins are off by, and boxes are larger by.
+    slack: f32,
+    axes: [Axis; 3],
+}
+
+/// Along one axis.
+#[derive(Clone, Copy, Default)]
+struct Axis {
+    /// Whether all rays go backward: then all of this is with the axis turned.
+    backward: bool,
+    /// Least and greatest.
+    origin: [f32; 2],
+    /// Least and greatest 1 over the direction; none if rays go both ways.
+    inverse: Option<[f32; 2]>,
+    /// All rays lie between.
+    swept: [f32; 2],
+}
+
+/// The rays of a bundle before they are in lanes.
+#[derive(Clone, Copy)]
+struct Rays<'a> {
+    stage: &'a Stage,
+    points: &'a Points,
+    ways: &'a Ways,
+    /// Of the target they come from, and of that they may hit.
+    from: usize,
+    to: usize,
+}
+
+/// What f32 leaves over, relative, in a few operations.
+const ROUNDING: f32 = 1e-6;
+
+impl Default for InLanes {
+    fn default() -> Self {
+        let three = [[0.0; POINTS]; 3];
+        let (length, axes) = ([0.0; POINTS], Default::default());
+        Self { origin: three, direction: three, inverse: three, length, far: 0.0, slack: 0.0, axes }
+    }
+}
+
+impl<'a> Rays<'a> {
+    fn target(&self) -> &'a Target {
+        &self.stage.targets[self.to]
+    }
+
+    /// One of them.
+    fn ray(&self, i: usize) -> Ray<'a> {
+        let Self { points, ways, from, .. } = *self;
+        let (event, back) = (points.event(i), vector(&ways.backs, i));
+        self.stage.ray(
+            &Way { from, face: points.faces[i], event, back, far: ways.far },
+            self.to,
+            self.target(),
+        )
+    }
+}
+
+impl Bundle {
+    /// Which of the open ways from points of a target to a light something stands in: a bit for each. With AVX2 if
+    /// `vectors` and there is such.
+    pub fn blocked(
+        &mut self,
+        stage: &Stage,
+        from: usize,
+        points: &Points,
+        ways: &Ways,
+        vectors: bool,
+    ) -> u64 {
+        let mut open = ways.open;
+        for to in 0..stage.targets.len() {
+            if open == 0 {
+                break;
+            }
+            open &= !self.blocked_by(&Rays { stage, points, ways, from, to }, open, vectors);
+        }
+        ways.open & !open
+    }
+
+    fn blocked_by(&mut self, rays: &Rays<'_>, open: u64, vectors: bool) -> u64 {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if vectors && x86::has_avx2() {
+                // SAFETY: the processor has both.
+                unsafe { self.blocked_avx2(rays, open) }
+            } else {
+                // SAFETY: every x86-64 processor has SSE2.
+                unsafe { self.blocked_with::<x86::Sse2>(rays, open) }
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            let _ = vectors;
+            // SAFETY: needs nothing.
+            unsafe { self.blocked_with::<super::lanes::One>(rays, open) }
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn blocked_avx2(&mut self, rays: &Rays<'_>, open: u64) -> u64 {
+        // SAFETY: the caller has made sure.
+        unsafe { self.blocked_with::<x86::Avx2>(rays, open) }
+    }
+
+    #[inline(always)]
+    unsafe fn blocked_with<L: Lanes>(&mut self, rays: &Rays<'_>, all: u64) -> u64 {
+        let tree: &Tree = &rays.target().tree;
+        if !self.lanes.aim(rays, all) {
+            // Beyond what f32 holds.
+            let blocked = |i: usize| all >> i & 1 == 1 && rays.ray(i).is_blocked(tree, &mut Vec::new());
+            return (0..POINTS).map(|i| u64::from(blocked(i)) << i).sum();
+        }
+        let mut open = all;
+        let mut stack = std::mem::take(&mut self.stack);
+        stack.clear();
+        if !tree.nodes.is_empty() {
+            stack.push((0, 0));
+        }
+        while let Some((index, first)) = stack.pop() {
+            let node = &tree.nodes[index as usize];
+            if !self.lanes.may_enter(node) {
+                continue;
+            }
+            let mut groups = first..GROUPS;
+            // SAFETY: as this function.
+            let entering =
+                |group: usize| of_group(open, group) & unsafe { self.lanes.enter::<L>(node, group) };
+            let Some((first, some)) =
+                groups.find_map(|g| Some((g, entering(g))).filter(|(_, some)| *some != 0))
+            else {
+                continue;
+            };
+            if node.count == 0 {
+                tree.fetch(node);
+                stack.extend([(node.first, first), (node.first + 1, first)]);
+                continue;
+            }
+            let mut masks = [0; GROUPS];
+            masks[first] = some;
+            for group in groups {
+                masks[group] = entering(group);
+            }
+            for leaf in &tree.leaves[node.first as usize..(node.first + node.count) as usize] {
+                let triangle = Triangle::new(leaf, tree);
+                for (group, mask) in masks.iter().enumerate().skip(first) {
+                    let mask = mask & of_group(open, group);
+                    if mask == 0 {
+                        continue;
+                    }
+                    // SAFETY: as this function.
+                    let mut possible = mask & unsafe { self.lanes.may_hit::<L>(&triangle, group) };
+                    while possible != 0 {
+                        let i = GROUP * group + possible.trailing_zeros() as usize;
+                        possible &= possible - 1;
+                        if rays.points.faces[i] != leaf.face || rays.from != rays.to {
+                            open &= !(u64::from(rays.ray(i).hits(leaf)) << i);
+                        }
+                    }
+                }
+            }
+            if open == 0 {
+                break;
+            }
+        }
+        self.stack = stack;
+        all & !open
+    }
+}
+
+/// The bits of a group's rays.
+#[inline(always)]
+fn of_group(bits: u64, group: usize) -> u32 {
+    (bits >> (GROUP * group)) as u32 & 0xff
+}
+
+/// A triangle in the tree's units.
+struct Triangle {
+    corner: [f32; 3],
+    /// From there to the two others.
+    edges: [[f32; 3]; 2],
+    normal: [f32; 3],
+    /// Of the longer edge, at most.
+    size: f32,
+}
+
+impl Triangle {
+    #[inline(always)]
+    fn new(leaf: &Leaf, tree: &Tree) -> Self {
+        let place = |c: DVec3| (c - tree.centre) * tree.scale;
+        let [a, b, c] = &leaf.corners;
+        let (a, b, c) = (place(*a), place(*b), place(*c));
+        let (e1, e2) = (b - a, c - a);
+        let size = e1.abs().element_sum().max(e2.abs().element_sum()) as f32;
+        let narrow = |v: DVec3| v.as_vec3().to_array();
+        Self { corner: narrow(a), edges: [narrow(e1), narrow(e2)], normal: narrow(e1.cross(e2)), size }
+    }
+}
+
+impl InLanes {
+    /// Takes rays into a target's rest frame and its tree's units; whether all of them, those that are not `open` aside, are
+    /// within what f32 holds.
+    #[inline(always)]
+    fn aim(&mut self, rays: &Rays<'_>, open: u64) -> bool {
+        let Rays { stage, points, ways, from, to } = *rays;
+        let (receiver, target) = (&stage.targets[from], rays.target());
+        let centre = target.map.offset_rest(target.tree.centre);
+        let scale = target.tree.scale;
+        let map = (target.motion != receiver.motion).then(|| stage.between(to, from));
+        // Loops of plain arithmetic, which compilers make vectors of. NaN, too, is beyond what f32 holds.
+        let mut within = [true; POINTS];
+        let (mut most, mut longest) = ([0f64; POINTS], [0f64; POINTS]);
+        for k in 0..3 {
+            // The same frame up to where its origin is, or another.
+            let (at, back) = match &map {
+                None => (points.events[k + 1], ways.backs[k + 1]),
+                Some(map) => {
+                    let row = map.rows()[k + 1];
+                    (component(row, &points.events), component(row, &ways.backs))
+                }
+            };
+            for i in 0..POINTS {
+                let (place, along) = ((at[i] - centre[k]) * scale, back[i] * scale);
+                let (there, size) = (place.abs(), along.abs());
+                // A component that is 0 has an infinite inverse, which is right.
+                within[i] &= (there < 1e15) & (size < 1e15) & ((size == 0.0) | (size > 1e-30));
+                most[i] = if there > most[i] { there } else { most[i] };
+                longest[i] = if size > longest[i] { size } else { longest[i] };
+                self.origin[k][i] = place as f32;
+                self.direction[k][i] = along as f32;
+                self.inverse[k][i] = 1.0 / along as f32;
+            }
+        }
+        for i in 0..POINTS {
+            within[i] &= longest[i] > 1e-15;
+            let [x, y, z] = &self.direction;
+            self.length[i] = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt() * (1.0 + 4.0 * ROUNDING);
+        }
+        let bits = within.iter().rev().fold(0, |bits, is| bits << 1 | u64::from(*is));
+        if bits & open != open {
+            return false;
+        }
+        // Those that are not open do what one does that is.
+        if open != u64::MAX {
+            let one = open.trailing_zeros() as usize % POINTS;
+            let mut of = [one; POINTS];
+            for (i, of) in of.iter_mut().enumerate().filter(|(i, _)| open >> i & 1 == 1) {
+                *of = i;
+            }
+            for values in self.origin.iter_mut().chain(&mut self.direction).chain(&mut self.inverse) {
+                *values = of.map(|i| values[i]);
+            }
+            most = of.map(|i| most[i]);
+        }
+        self.far = ways.far as f32 * (1.0 + ROUNDING);
+        self.slack = most.iter().fold(0.0, |a, b| if *b > a { *b } else { a }) as f32 * ROUNDING;
+        for k in 0..3 {
+            let (origin, direction, inverse) =
+                (range(&self.origin[k]), range(&self.direction[k]), range(&self.inverse[k]));
+            let backward = direction[1] < 0.0;
+            let turned = |[low, high]: [f32; 2]| if backward { [-high, -low] } else { [low, high] };
+            let (origin, direction, inverse) = (turned(origin), turned(direction), turned(inverse));
+            self.axes[k] = Axis {
+                backward,
+                origin,
+                inverse: (direction[0] > 0.0).then_some(inverse),
+                swept: [
+                    origin[0] + (direction[0] * self.far).min(0.0) * (1.0 + ROUNDING),
+                    origin[1] + (direction[1] * self.far).max(0.0) * (1.0 + ROUNDING),
+                ],
+            };
+        }
+        true
+    }
+
+    /// Whether any ray might enter a box, by their ranges.
+    #[inline(always)]
+    fn may_enter(&self, node: &Node) -> bool {
+        let (mut near, mut far) = (0f32, self.far);
+        for (k, axis) in self.axes.iter().enumerate() {
+            let (low, high) = (node.min[k] - self.slack, node.max[k] + self.slack);
+            let (low, high) = if axis.backward { (-high, -low) } else { (low, high) };
+            match axis.inverse {
+                Some([least, greatest]) => {
+                    let (from, to) = (low - axis.origin[1], high - axis.origin[0]);
+                    near = near.max(from * if from >= 0.0 { least } else { greatest });
+                    far = far.min(to * if to >= 0.0 { greatest } else { least });
+                }
+                None => {
+                    if low > axis.swept[1] || high < axis.swept[0] {
+                        return false;
+                    }
+                }
+            }
+        }
+        near <= far * (1.0 + 4.0 * ROUNDING)
+    }
+
+    /// Which rays of a group may enter a box.
+    #[inline(always)]
+    unsafe fn enter<L: Lanes>(&self, node: &Node, group: usize) -> u32 {
+        let mut bits = 0;
+        for i in (0..GROUP).step_by(L::COUNT) {
+            let lane = GROUP * group + i;
+            // SAFETY: as this function.
+            unsafe {
+                let (mut near, mut far) = (L::splat(0.0), L::splat(self.far));
+                for k in 0..3 {
+                    let (origin, inverse) =
+                        (L::load(&self.origin[k][lane..]), L::load(&self.inverse[k][lane..]));
+                    let low = L::splat(node.min[k] - self.slack).sub(origin).mul(inverse);
+                    let high = L::splat(node.max[k] + self.slack).sub(origin).mul(inverse);
+                    // Where one is not a number, a ray runs in a side of the box: it has no say then.
+                    near = low.min(high).max(near);
+                    far = low.max(high).min(far);
+                }
+                let rounding = L::splat(1.0 + ROUNDING);
+                bits |= far.mul(rounding).at_least(near).bits() << i;
+            }
+        }
+        bits
+    }
+
+    /// Which rays of a group may hit a triangle: by o + t d = a + u e₁ + v e₂, with bounds of what f32 may be off by.
+    #[inline(always)]
+    unsafe fn may_hit<L: Lanes>(&self, triangle: &Triangle, group: usize) -> u32 {
+        let mut bits = 0;
+        for i in (0..GROUP).step_by(L::COUNT) {
+            let lane = GROUP * group + i;
+            // SAFETY: as this function.
+            unsafe {
+                let Triangle { corner, edges: [e1, e2], normal, size } = triangle;
+                let (a, e1, e2, normal) =
+                    (splat::<L>(corner), splat::<L>(e1), splat::<L>(e2), splat::<L>(normal));
+                let (d, o) = (load::<L>(&self.direction, lane), load::<L>(&self.origin, lane));
+                let r = [o[0].sub(a[0]), o[1].sub(a[1]), o[2].sub(a[2])];
+                let zero = L::splat(0.0);
+                // What a corner from the origin is off by, and its products with the direction and an edge.
+                let far =
+                    r[0].max(zero.sub(r[0])).add(r[1].max(zero.sub(r[1]))).add(r[2].max(zero.sub(r[2])));
+                let off = far.mul_add(L::splat(ROUNDING), L::splat(self.slack + ROUNDING));
+                let off = off.mul(L::load(&self.length[lane..])).mul(L::splat(4.0 * size));
+                let c = [
+                    r[1].mul(d[2]).sub(r[2].mul(d[1])),
+                    r[2].mul(d[0]).sub(r[0].mul(d[2])),
+                    r[0].mul(d[1]).sub(r[1].mul(d[0])),
+                ];
+                let (u, v, det) = (dot(e2, c), zero.sub(dot(e1, c)), zero.sub(dot(d, normal)));
+                let back = zero.above(det);
+                let (u, v) = (back.choose(zero.sub(u), u), back.choose(zero.sub(v), v));
+                let det = back.choose(zero.sub(det), det);
+                let inside = u.add(off).at_least(zero).and(v.add(off).at_least(zero));
+                let inside = inside.and(det.add(off).add(off).at_least(u.add(v)));
+                bits |= inside.bits() << i;
+            }
+        }
+        bits
+    }
+}
+
+/// # Safety
+/// As the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn splat<L: Lanes>(v: &[f32; 3]) -> [L; 3] {
+    // SAFETY: as this function.
+    unsafe { [L::splat(v[0]), L::splat(v[1]), L::splat(v[2])] }
+}
+
+/// # Safety
+/// As the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn load<L: Lanes>(of: &[[f32; POINTS]; 3], lane: usize) -> [L; 3] {
+    // SAFETY: as this function.
+    unsafe { [L::load(&of[0][lane..]), L::load(&of[1][lane..]), L::load(&of[2][lane..])] }
+}
+
+/// # Safety
+/// As the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
+    // SAFETY: as this function.
+    unsafe { a[0].mul_add(b[0], a[1].mul_add(b[1], a[2].mul(b[2]))) }
+}
+
+/// Least and greatest.
+#[inline(always)]
+fn range(values: &[f32; POINTS]) -> [f32; 2] {
+    let (mut low, mut high) = ([f32::INFINITY; GROUP], [f32::NEG_INFINITY; GROUP]);
+    for values in values.chunks_exact(GROUP) {
+        for (i, value) in values.iter().enumerate() {
+            low[i] = if *value < low[i] { *value } else { low[i] };
+            high[i] = if *value > high[i] { *value } else { high[i] };
+        }
+    }
+    let (low, high) =
+        (low.into_iter().fold(f32::INFINITY, f32::min), high.into_iter().fold(f32::NEG_INFINITY, f32::max));
+    [low, high]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::beam::tests::{random, soup};
+    use super::*;
+    use crate::relativity::Motion;
+    use crate::scene::{Camera, Lens, Projection};
+    use std::sync::Arc;
+    use terrell_geodesic::{Celerity, Event, FourVector, Tetrad};
+
+    /// Rays together, whatever the vectors, are blocked just where one at a time is by any triangle: from a body to itself,
+    /// to one in its frame and to moving ones, near and far, ending or not, along an axis, some of them left out.
+    #[test]
+    fn bundles_are_blocked_where_rays_are() {
+        let mut random = random(5);
+        let mut bundle = Bundle::default();
+        let (mut points, mut ways) = (Points::default(), Ways::default());
+        let observer = Tetrad::of_world(Event::origin());
+        let camera = Camera { observer, lens: Lens::new(Projection::Pinhole, 45.0, 8, 8).unwrap() };
+        let [mut blocked, mut free] = [0, 0];
+        for (count, scale) in [(1, 1.0), (40, 1e-20), (300, 1.0), (100, 1e12)] {
+            let mesh = Arc::new(soup(count, scale, &mut random));
+            let tree = Arc::new(Tree::new(&mesh));
+            let bodies = [(0.0, 0.3), (0.0, -0.2), (2.0, 4.0), (30.0, 1.0)].into_iter().enumerate();
+            let bodies = bodies.map(|(i, (u, place))| {
+                let celerity = Celerity::new(DVec3::new(u, -0.5 * u, 0.1 * u)).unwrap();
+                let motion = Motion { celerity, origin: Event::at(0.0, DVec3::splat(place) * scale) };
+                (i, motion, mesh.clone(), tree.clone())
+            });
+            let stage = Stage::new(bodies.collect(), &camera, true);
+            for round in 0..40 {
+                let width = [1.0, 0.05, 1e-4][round % 3];
+                let mut point =
+                    |reach: f64| DVec3::from_array([0; 3].map(|_| random() - 0.5)) * reach * scale;
+                let (from, to) = (point(3.0), point(3.0));
+                points.count = POINTS - round % 2 * 5;
+                for i in 0..POINTS {
+                    let way = to + point(width) - (from + point(width));
+                    let way = if round % 8 == 3 { way * DVec3::X } else { way };
+                    let at = from + point(width);
+                    let (event, back) = (
+                        FourVector::<terrell_geodesic::Rest>::from_parts(-at.length(), at),
+                        FourVector::<terrell_geodesic::Rest>::from_parts(-way.length(), way),
+                    );
+                    points.events[0][i] = event.t;
+                    ways.backs[0][i] = back.t;
+                    for k in 0..3 {
+                        points.events[k + 1][i] = event.xyz()[k];
+                        ways.backs[k + 1][i] = back.xyz()[k];
+                    }
+                    points.faces[i] = (i % count) as u32;
+                }
+                ways.far = if round % 4 < 2 { 1.0 } else { f64::INFINITY };
+                ways.open =
+                    (!0 >> (POINTS - points.count)) & if round % 5 == 4 { 0x0123_4567_89ab_cdef } else { !0 };
+                for (from, to) in (0..4).flat_map(|from| (0..4).map(move |to| (from, to))) {
+                    let rays = Rays { stage: &stage, points: &points, ways: &ways, from, to };
+                    let every = |i: usize| tree.leaves.iter().any(|leaf| rays.ray(i).hits(leaf));
+                    let expected = (0..POINTS)
+                        .filter(|&i| ways.open >> i & 1 == 1 && every(i))
+                        .fold(0, |bits, i| bits | 1 << i);
+                    for vectors in [false, true] {
+                        assert_eq!(bundle.blocked_by(&rays, ways.open, vectors), expected);
+                    }
+                    assert!(bundle.lanes.aim(&rays, ways.open));
+                    // SAFETY: needs nothing.
+                    let one = unsafe { bundle.blocked_with::<super::super::lanes::One>(&rays, ways.open) };
+                    assert_eq!(one, expected);
+                    blocked += expected.count_ones();
+                    free += (ways.open & !expected).count_ones();
+                }
+                let [one, all] = [bundle.blocked(&stage, 0, &points, &ways, true), ways.open];
+                let any = |i: usize| {
+                    (0..4).any(|to| {
+                        let rays = Rays { stage: &stage, points: &points, ways: &ways, from: 0, to };
+                        tree.leaves.iter().any(|leaf| rays.ray(i).hits(leaf))
+                    })
+                };
+                assert_eq!(
+                    one,
+                    (0..POINTS).filter(|&i| all >> i & 1 == 1 && any(i)).fold(0, |b, i| b | 1 << i)
+                );
+            }
+        }
+        assert!(blocked > 5000 && free > 10_000, "{blocked} {free}");
+    }
+}
