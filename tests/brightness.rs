@@ -270,7 +270,7 @@ fn what_needs_ray_tracing_is_traced() {
     let shut = scene("color = [1, 1, 1]").replace("position = [0, 0, 3]", "position = [0, 4, 0]");
     std::fs::write(here.join("shut.toml"), shut).unwrap();
     let told = good(&["render", "shut.toml", SMALL], here);
-    assert!(told.contains("light1' reaches nothing") && told.contains("inside a body"), "{told}");
+    assert!(told.contains("light1' reaches nothing") && told.contains("inside 'cube'"), "{told}");
     std::fs::write(here.join("unlit.toml"), format!("[material.m]\nsurface = \"lit\"\n{CUBE}")).unwrap();
     assert!(good(&["render", "unlit.toml", SMALL], here).contains("nothing lights them"));
     std::fs::write(here.join("sky.toml"), "[sky]\ntexture = \"stars\"\n").unwrap();

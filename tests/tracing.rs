@@ -363,6 +363,15 @@ fn a_lamp_inside_a_body_lights_nothing() {
     let count = rays.count;
     assert_eq!(rays.to_lights, [[count.shadow, count.blocked]]);
     assert!(count.shadow > 20 && count.blocked == count.shadow, "{count:?}");
+    let observer = scene.camera().unwrap().observer;
+    let around = |scene: &Scene| scene.body_around(&scene.lights[0], &observer).map(|b| b.name.clone());
+    assert_eq!(around(&scene).as_deref(), Some("box"));
+    // The lamp is seen a distance of √26 ago, when a box that is there now was elsewhere, or another was there.
+    let celerity = Celerity::from_beta(DVec3::X * 0.8).unwrap();
+    scene.bodies[1].motion = Motion { celerity, origin: Event::at(0.0, DVec3::new(0.0, 0.0, 2.0)) };
+    assert_eq!(around(&scene), None);
+    scene.bodies[1].motion.origin = Event::at(-26f64.sqrt(), DVec3::new(0.2, 0.0, 2.0));
+    assert_eq!(around(&scene).as_deref(), Some("box"));
 }
 
 /// The same seed gives the same picture on any number of threads; another one gives another.

@@ -198,8 +198,12 @@ impl Done<'_> {
             line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
         }
         let brightest = summary::brightest(self.film);
-        let dark: Vec<String> =
-            self.report.rays.iter().flat_map(|rays| summary::dark_lights(rays, self.scene)).collect();
+        let dark: Vec<String> = self
+            .report
+            .rays
+            .iter()
+            .flat_map(|rays| summary::dark_lights(rays, self.scene, &self.camera.observer))
+            .collect();
         let is_hole = self.film.body.iter().all(|body| *body == HOLE);
         if (self.film.covered() > 0 || self.scene.sky.is_some())
             && dark.is_empty()

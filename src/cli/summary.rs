@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use terrell::color::Coloring;
 use terrell::film::Film;
-use terrell::geodesic::{Event, Sense, World};
+use terrell::geodesic::{Event, Sense, Tetrad, World};
 use terrell::light::{DopplerAt, Shading, TableInfo, has_shadows};
 use terrell::plan::{Method, has_reflections};
 use terrell::relativity::ApparentMap;
@@ -151,14 +151,17 @@ pub fn rays(traced: &Traced, scene: &Scene) -> Value {
 }
 
 /// Lights of which nothing reaches what is seen, for people to read.
-pub fn dark_lights(traced: &Traced, scene: &Scene) -> Vec<String> {
+pub fn dark_lights(traced: &Traced, scene: &Scene, observer: &Tetrad) -> Vec<String> {
     let dark =
         |([asked, blocked], light): &(&[u64; 2], &Light)| asked == blocked && light.kind.casts_shadows();
-    let note = |(_, light): (&[u64; 2], &Light)| {
-        format!(
-            "the light '{}' reaches nothing of what is seen: it shines from behind, or something stands in the way of all of it; is it inside a body?",
-            light.name
-        )
+    let note = |([asked, _], light): (&[u64; 2], &Light)| {
+        let rays = count_in_words(*asked);
+        let why = match scene.body_around(light, observer) {
+            Some(body) => format!("it is inside '{}'; {rays} rays to it are blocked", body.name),
+            None if *asked == 0 => "it shines from behind".to_owned(),
+            None => format!("all {rays} rays to it are blocked"),
+        };
+        format!("the light '{}' reaches nothing of what is seen: {why}", light.name)
     };
     traced.to_lights.iter().zip(&scene.lights).filter(dark).map(note).collect()
 }

@@ -135,7 +135,7 @@ impl ApparentMap {
     }
 
     /// Columns: the observer's axes in the (unboosted) axes of the rest frame.
-    fn axes(&self) -> DMat3 {
+    pub(crate) fn axes(&self) -> DMat3 {
         let [right, up, forward] = self.f64.axes.map(DVec3::from_array);
         DMat3::from_cols(right, up, forward)
     }

@@ -197,6 +197,18 @@ impl Mesh {
         self.bounds().map_or(DVec3::ZERO, |(low, high)| 0.5 * (low + high))
     }
 
+    /// How many times its surface goes around a point: ±1 inside a closed one, 0 outside, between for one with holes. The
+    /// sum of its triangles' solid angles over 4π (van Oosterom and Strackee 1983, Eq. 8).
+    pub fn winding(&self, point: DVec3) -> f64 {
+        let half_angle = |triangle: usize| {
+            let [a, b, c] = self.corners(triangle).map(|corner| corner - point);
+            let [la, lb, lc] = [a.length(), b.length(), c.length()];
+            let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+            a.dot(b.cross(c)).atan2(below)
+        };
+        (0..self.triangles.len()).map(half_angle).sum::<f64>() / std::f64::consts::TAU
+    }
+
     /// Every vertex moved by `place`; normals turned by its linear part.
     pub fn placed(mut self, place: &glam::DAffine3) -> Self {
         for i in 0..self.vertex_count() {
@@ -424,6 +436,16 @@ mod tests {
         mesh.paint = Paint::Faces(vec![]);
         assert!(matches!(mesh.check(), Err(MeshError::BadAttribute { .. })));
         assert_eq!(triangle().check(), Ok(()));
+    }
+
+    #[test]
+    fn closed_surfaces_go_around_what_is_inside() {
+        let mut cube = crate::scene::shapes::cube();
+        let at = |mesh: &Mesh, x: f64| mesh.winding(DVec3::new(x, 0.2, -0.1));
+        assert!((at(&cube, 0.4).abs() - 1.0).abs() < 1e-12 && at(&cube, 1.6).abs() < 1e-12);
+        // Five of six sides, from the middle.
+        cube.triangles.truncate(10);
+        assert!((cube.winding(cube.centre()).abs() - 5.0 / 6.0).abs() < 1e-12);
     }
 
     #[test]

@@ -45,7 +45,7 @@ pub use spacetime::{Spacetime, SpacetimeError, Stance};
 pub use texture::{MAX_TEXELS, Picture, Texture, Wrap};
 pub use view::{Aim, View, ViewError};
 
-use terrell_geodesic::{Celerity, CelerityError};
+use terrell_geodesic::{Celerity, CelerityError, FourVector, Tetrad, Wide};
 
 /// Bodies and the one who looks at them.
 #[derive(Clone, Debug)]
@@ -115,6 +115,22 @@ impl Scene {
     /// If nobody can be there; see [`EyeError`].
     pub fn eye(&self, camera: &Camera) -> Result<Option<Eye>, EyeError> {
         Eye::new(&self.spacetime, &self.view, &camera.observer)
+    }
+
+    /// The body that a light at a place is inside of, if any, when it is where an observer sees it.
+    pub fn body_around(&self, light: &Light, observer: &Tetrad) -> Option<&Body> {
+        let (LightKind::Point { position } | LightKind::Spot { position, .. }) = light.kind else {
+            return None;
+        };
+        let lamp_from_world = light.motion.world_from_lamp::<Wide>().inverse();
+        let since = (lamp_from_world * observer.event().since::<Wide>(light.motion.origin)).rounded();
+        let seen = FourVector::from_parts(since.t - since.xyz().distance(position), position).widened();
+        let seen = light.motion.world_from_lamp::<Wide>() * seen;
+        self.bodies.iter().find(|body| {
+            let between = light.motion.origin.since::<Wide>(body.motion.origin);
+            let at = body.motion.world_from_rest::<Wide>().inverse() * (between + seen);
+            body.mesh.winding(at.rounded().xyz()).abs() > 0.5
+        })
     }
 
     /// Sets how many seconds of their clips pass in a unit of time, for all that is animated; 0 stops it.

@@ -64,12 +64,50 @@ struct Edge {
     least: f32,
 }
 
-/// A ray from the origin of a beam.
+/// Rays from the origin of a beam, side by side.
+#[repr(align(64))]
 #[derive(Clone, Copy)]
 pub(super) struct Directed {
-    pub direction: DVec3,
-    /// 1/s of what it is known to hit already, s in units of the direction; 0 for nothing.
-    pub nearness: f64,
+    pub count: usize,
+    pub directions: [[f64; RAYS]; 3],
+    /// 1/s of what they are known to hit already, s in units of the direction; 0 for nothing.
+    pub nearness: [f64; RAYS],
+}
+
+impl Default for Directed {
+    fn default() -> Self {
+        Self { count: 0, directions: [[0.0; RAYS]; 3], nearness: [0.0; RAYS] }
+    }
+}
+
+impl Directed {
+    #[inline]
+    pub fn direction(&self, i: usize) -> DVec3 {
+        DVec3::from_array(self.directions.each_ref().map(|c| c[i]))
+    }
+
+    pub fn push(&mut self, direction: DVec3, nearness: f64) {
+        let i = self.count;
+        self.count += 1;
+        for k in 0..3 {
+            self.directions[k][i] = direction[k];
+        }
+        self.nearness[i] = nearness;
+    }
+
+    /// The way that all of them face; none if they differ.
+    pub fn facing(&self) -> Option<(usize, bool)> {
+        let (longest, backward) = facing(self.direction(0));
+        let sign = if backward { -1.0 } else { 1.0 };
+        let [along, first, second] = [0, 1, 2].map(|k| &self.directions[(longest + k) % 3][..self.count]);
+        let mut all = true;
+        for i in 0..along.len() {
+            let size = sign * along[i];
+            // Of two as long, facing() takes the first, which is no matter here.
+            all &= (size >= first[i].abs()) & (size >= second[i].abs()) & (size > 0.0);
+        }
+        all.then_some((longest, backward))
+    }
 }
 
 /// Hits that differ by less, relative, are compared in f64: f32 is good to a few 10⁻⁷.
@@ -110,25 +148,35 @@ pub(super) fn facing(direction: DVec3) -> (usize, bool) {
 
 impl Beam {
     /// Makes it the beam of these rays, which all face the same way.
-    pub fn aim(&mut self, way: (usize, bool), rays: &[Directed], tree: &Tree, origin: &Origin<'_>) {
+    #[inline(always)]
+    fn aim(&mut self, way: (usize, bool), rays: &Directed, tree: &Tree, origin: &Origin<'_>) {
         let (longest, backward) = way;
         let inverse_unit = 1.0 / (tree.scale * inverse_unit(origin.place(tree).0));
         self.order = [longest, (longest + 1) % 3, (longest + 2) % 3];
         self.sign = if backward { -1.0 } else { 1.0 };
         let [along, first, second] = self.order;
-        let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        for (i, ray) in rays.iter().enumerate() {
-            let inverse = 1.0 / ray.direction[along].abs();
-            let slopes = [ray.direction[first] * inverse, ray.direction[second] * inverse];
-            for k in 0..2 {
-                self.slopes[k][i] = slopes[k];
-                range[k] = [range[k][0].min(slopes[k]), range[k][1].max(slopes[k])];
-            }
-            // A little farther, so that what is as near is found, too, and can be compared exactly.
-            let nearness = ray.nearness * inverse * inverse_unit;
-            self.rays.nearness[i] = (nearness * (1.0 - f64::from(CLOSE))) as f32;
+        let (count, whole) = (rays.count, rays.count.next_multiple_of(WIDEST));
+        // Loops of plain arithmetic, which compilers make vectors of.
+        let mut inverse = [1.0; RAYS];
+        for (inverse, along) in inverse[..count].iter_mut().zip(&rays.directions[along]) {
+            *inverse = 1.0 / along.abs();
         }
-        let (count, whole) = (rays.len(), rays.len().next_multiple_of(WIDEST));
+        let mut range = [[0.0; 2]; 2];
+        for (k, component) in [first, second].into_iter().enumerate() {
+            let slopes = &mut self.slopes[k];
+            for (i, across) in rays.directions[component][..count].iter().enumerate() {
+                slopes[i] = across * inverse[i];
+            }
+            // What is not a ray is as the first.
+            let one = slopes[0];
+            slopes[count..whole].fill(one);
+            range[k] = least_and_greatest(&slopes[..whole]);
+        }
+        // A little farther, so that what is as near is found, too, and can be compared exactly.
+        let farther = inverse_unit * (1.0 - f64::from(CLOSE));
+        for (i, nearness) in self.rays.nearness[..count].iter_mut().enumerate() {
+            *nearness = (rays.nearness[i] * inverse[i] * farther) as f32;
+        }
         self.rays.found[..whole].fill(f32::from_bits(NONE));
         // They hit nothing.
         self.rays.nearness[count..whole].fill(f32::INFINITY);
@@ -151,35 +199,50 @@ impl Beam {
         self.rays.found[ray].to_bits()
     }
 
-    /// Looks for the nearest triangle for each ray; with AVX2 if `vectors` and there is such.
-    pub fn trace(&mut self, tree: &Tree, origin: &Origin<'_>, vectors: bool) {
+    /// Looks for the nearest triangle for each of some rays that face the same way; with AVX2 if `vectors` and there is
+    /// such.
+    pub fn trace(
+        &mut self,
+        way: (usize, bool),
+        rays: &Directed,
+        tree: &Tree,
+        origin: &Origin<'_>,
+        vectors: bool,
+    ) {
         #[cfg(target_arch = "x86_64")]
         {
             if vectors && x86::has_avx2() {
                 // SAFETY: the processor has both.
-                unsafe { self.trace_avx2(tree, origin) }
+                unsafe { self.trace_avx2(way, rays, tree, origin) }
             } else {
                 // SAFETY: every x86-64 processor has SSE2.
-                unsafe { self.trace_with::<x86::Sse2>(tree, origin) }
+                unsafe { self.trace_with::<x86::Sse2>(way, rays, tree, origin) }
             }
         }
         #[cfg(not(target_arch = "x86_64"))]
         {
             let _ = vectors;
             // SAFETY: needs nothing.
-            unsafe { self.trace_with::<super::lanes::One>(tree, origin) }
+            unsafe { self.trace_with::<super::lanes::One>(way, rays, tree, origin) }
         }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn trace_avx2(&mut self, tree: &Tree, origin: &Origin<'_>) {
+    fn trace_avx2(&mut self, way: (usize, bool), rays: &Directed, tree: &Tree, origin: &Origin<'_>) {
         // SAFETY: the caller has made sure.
-        unsafe { self.trace_with::<x86::Avx2>(tree, origin) }
+        unsafe { self.trace_with::<x86::Avx2>(way, rays, tree, origin) }
     }
 
     #[inline(always)]
-    unsafe fn trace_with<L: Lanes>(&mut self, tree: &Tree, origin: &Origin<'_>) {
+    unsafe fn trace_with<L: Lanes>(
+        &mut self,
+        way: (usize, bool),
+        rays: &Directed,
+        tree: &Tree,
+        origin: &Origin<'_>,
+    ) {
+        self.aim(way, rays, tree, origin);
         let (place, slack) = origin.place(tree);
         let unit = tree.scale * inverse_unit(place);
         let boxes = Boxes::new(self, place, slack);
@@ -358,6 +421,21 @@ impl Beam {
     }
 }
 
+/// Of numbers in whole vectors.
+#[inline(always)]
+fn least_and_greatest(values: &[f64]) -> [f64; 2] {
+    let (mut low, mut high) = ([f64::INFINITY; WIDEST], [f64::NEG_INFINITY; WIDEST]);
+    for values in values.chunks_exact(WIDEST) {
+        for (i, value) in values.iter().enumerate() {
+            low[i] = if *value < low[i] { *value } else { low[i] };
+            high[i] = if *value > high[i] { *value } else { high[i] };
+        }
+    }
+    let least = |a: f64, b: f64| if b < a { b } else { a };
+    let greatest = |a: f64, b: f64| if b > a { b } else { a };
+    [low.into_iter().fold(f64::INFINITY, least), high.into_iter().fold(f64::NEG_INFINITY, greatest)]
+}
+
 /// c + a·u + b·v.
 ///
 /// # Safety
@@ -486,28 +564,34 @@ pub(super) mod tests {
                     let mut point = |reach: f64| DVec3::from_array([0; 3].map(|_| random() - 0.5)) * reach;
                     let towards = origin.to(point(2.0) * scale) / scale;
                     let width = [0.5, 0.02, 1e-5][hits % 3];
-                    let rays: Vec<Directed> = (0..50)
-                        .map(|_| Directed { direction: towards + point(width), nearness: 0.0 })
-                        .filter(|ray| facing(ray.direction) == facing(towards))
-                        .collect();
-                    let expected: Vec<Option<(f64, u32)>> = rays
-                        .iter()
+                    let mut rays = Directed::default();
+                    (0..50)
+                        .map(|_| towards + point(width))
+                        .filter(|direction| facing(*direction) == facing(towards))
+                        .for_each(|direction| rays.push(direction, 0.0));
+                    if rays.count == 0 {
+                        continue;
+                    }
+                    assert_eq!(rays.facing(), Some(facing(towards)));
+                    let expected: Vec<Option<(f64, u32)>> = (0..rays.count)
                         .map(|ray| {
                             let hit = |leaf: &Leaf| {
                                 let corners = leaf.corners.map(|c| origin.to(c) / scale);
-                                let at = meet(corners, ray.direction).filter(|at| *at > 0.0)?;
+                                let at = meet(corners, rays.direction(ray)).filter(|at| *at > 0.0)?;
                                 Some((at, leaf.face))
                             };
                             tree.leaves.iter().filter_map(hit).min_by(|a, b| a.0.total_cmp(&b.0))
                         })
                         .collect();
                     for kind in 0..3 {
-                        beam.aim(facing(towards), &rays, &tree, &origin);
+                        let way = facing(towards);
                         match kind {
-                            0 => beam.trace(&tree, &origin, true),
-                            1 => beam.trace(&tree, &origin, false),
+                            0 => beam.trace(way, &rays, &tree, &origin, true),
+                            1 => beam.trace(way, &rays, &tree, &origin, false),
                             // SAFETY: needs nothing.
-                            _ => unsafe { beam.trace_with::<super::super::lanes::One>(&tree, &origin) },
+                            _ => unsafe {
+                                beam.trace_with::<super::super::lanes::One>(way, &rays, &tree, &origin);
+                            },
                         }
                         for (i, expected) in expected.iter().enumerate() {
                             let found = beam.found(i);

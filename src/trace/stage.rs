@@ -1,3 +1,6 @@
+use super::beam::RAYS;
+#[cfg(target_arch = "x86_64")]
+use super::lanes::x86;
 use super::origin::Origin;
 use super::ray::Ray;
 use super::tree::Tree;
@@ -31,12 +34,14 @@ pub(super) struct Target {
 /// A circle of the observer's sky with the whole body in it: the image of the sphere around it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outline {
-    pub axis: DVec3,
-    pub half_angle: f64,
+    axis: DVec3,
+    half_angle: f64,
+    cosine: f64,
+    sine: f64,
 }
 
 impl Outline {
-    const EVERYWHERE: Self = Self { axis: DVec3::Z, half_angle: 4.0 };
+    const EVERYWHERE: Self = Self { axis: DVec3::Z, half_angle: 4.0, cosine: -1.0, sine: 0.0 };
 
     /// Of a sphere in the rest frame. The plane that cuts its circle from the rest sky is a four-vector, and is boosted.
     fn new(map: &ApparentMap, tree: &Tree, camera: &Camera, motion: &Motion) -> Self {
@@ -55,12 +60,18 @@ impl Outline {
         if !plane.xyz().is_finite() {
             return Self::EVERYWHERE;
         }
-        Self { axis: plane.xyz().normalize_or(DVec3::Z), half_angle: sine.atan2(-plane.t) + 1e-12 }
+        let half_angle = sine.atan2(-plane.t) + 1e-12;
+        let (sine, cosine) = half_angle.sin_cos();
+        Self { axis: plane.xyz().normalize_or(DVec3::Z), half_angle, cosine, sine }
     }
 
     /// Whether a circle of directions and this one have any in common.
+    #[inline]
     pub fn meets(&self, axis: DVec3, half_angle: f64) -> bool {
-        angle(self.axis, axis) <= self.half_angle + half_angle
+        // By bounds of the cosine of both angles together first, which is cheaper.
+        let least =
+            (self.cosine * (1.0 - 0.5 * half_angle * half_angle)).min(self.cosine) - self.sine * half_angle;
+        self.axis.dot(axis) > least - 1e-9 && angle(self.axis, axis) <= self.half_angle + half_angle
     }
 }
 
@@ -82,6 +93,59 @@ impl Target {
         let along = v.dot(axis);
         let rest = self.sky.boosted(v, length).along;
         self.map.rotate_back(v + (rest - along) * axis)
+    }
+
+    /// All together; with AVX2 if `vectors` and there is such.
+    pub fn rest_directions(&self, sights: &Sights, rest: &mut [[f64; RAYS]; 3], vectors: bool) {
+        #[cfg(target_arch = "x86_64")]
+        if vectors && x86::has_avx2() {
+            // SAFETY: the processor has both.
+            unsafe { self.rest_directions_avx2(sights, rest) };
+            return;
+        }
+        let _ = vectors;
+        self.rest_directions_with(sights, rest);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn rest_directions_avx2(&self, sights: &Sights, rest: &mut [[f64; RAYS]; 3]) {
+        self.rest_directions_with(sights, rest);
+    }
+
+    /// In loops of plain arithmetic, which compilers make vectors of.
+    #[inline(always)]
+    fn rest_directions_with(&self, Sights([length, x, y, z]): &Sights, rest: &mut [[f64; RAYS]; 3]) {
+        let axis = self.sky.axis();
+        // What is added along the motion.
+        let mut more = [0.0; RAYS];
+        for (i, more) in more.iter_mut().enumerate() {
+            let along = x[i] * axis.x + y[i] * axis.y + z[i] * axis.z;
+            let across =
+                [y[i] * axis.z - z[i] * axis.y, z[i] * axis.x - x[i] * axis.z, x[i] * axis.y - y[i] * axis.x];
+            let across = across[0] * across[0] + across[1] * across[1] + across[2] * across[2];
+            *more = self.sky.boosted_parts(along, across, length[i]).along - along;
+        }
+        let axes = self.map.axes();
+        for (k, rest) in rest.iter_mut().enumerate() {
+            let row = axes.row(k);
+            for i in 0..RAYS {
+                rest[i] = row.x * (x[i] + more[i] * axis.x)
+                    + row.y * (y[i] + more[i] * axis.y)
+                    + row.z * (z[i] + more[i] * axis.z);
+            }
+        }
+    }
+}
+
+/// Lines of sight side by side: lengths and components, observer's axes.
+#[repr(align(64))]
+pub(super) struct Sights(pub [[f64; RAYS]; 4]);
+
+impl Default for Sights {
+    fn default() -> Self {
+        // Any that can be boosted, where there are none.
+        Self([[1.0; RAYS], [0.0; RAYS], [0.0; RAYS], [1.0; RAYS]])
     }
 }
 

@@ -3,7 +3,7 @@ use super::bundle::Bundle;
 use super::origin::Origin;
 use super::path::{self, Vertex, World};
 use super::random::Random;
-use super::stage::{Stage, Target};
+use super::stage::{Sights, Stage, Target};
 use crate::film::Rows;
 use crate::light::{Facet, Points, SeenShading, Ways};
 use crate::scene::{Lens, Sky};
@@ -25,7 +25,9 @@ pub(super) struct Tile {
     sights: Vec<Sight>,
     /// Bodies that may be seen in the tile.
     met: Vec<usize>,
-    rays: Vec<Directed>,
+    /// Their lengths and components, those of `sights`.
+    seen: Sights,
+    rays: Directed,
     /// Of which lines of sight they are.
     numbers: Vec<usize>,
     /// What of one body may be lit, and how it is lit.
@@ -174,11 +176,16 @@ impl Tile {
                 let at =
                     DVec2::new(f64::from(left + column), f64::from(top + line)) + DVec2::from_array(sample);
                 let Some(direction) = job.lens.direction(at) else { continue };
+                let i = self.sights.len();
+                self.seen.0[0][i] = direction.length();
+                for k in 0..3 {
+                    self.seen.0[k + 1][i] = direction[k];
+                }
                 self.sights.push(Sight {
                     pixel: (line * job.lens.width() + left + column) as usize,
                     at,
                     direction,
-                    length: direction.length(),
+                    length: self.seen.0[0][i],
                     nearness: 0.0,
                     target: 0,
                     leaf: NONE,
@@ -194,28 +201,30 @@ impl Tile {
         for met in 0..self.met.len() {
             let index = self.met[met];
             let target = &job.stage.targets[index];
-            self.rays.clear();
-            let rest = |s: &Sight| Directed {
-                direction: target.rest_direction(s.direction, s.length),
-                nearness: s.nearness,
-            };
-            self.rays.extend(self.sights.iter().map(rest));
-            let Some(first) = self.rays.first() else { return };
-            let way = facing(first.direction);
-            if self.rays.iter().all(|ray| facing(ray.direction) == way) {
+            if self.sights.is_empty() {
+                return;
+            }
+            self.rays.count = self.sights.len();
+            target.rest_directions(&self.seen, &mut self.rays.directions, job.vectors);
+            for (nearness, sight) in self.rays.nearness.iter_mut().zip(&self.sights) {
+                *nearness = sight.nearness;
+            }
+            if let Some(way) = self.rays.facing() {
                 self.numbers.clear();
-                self.numbers.extend(0..self.rays.len());
+                self.numbers.extend(0..self.rays.count);
                 self.follow(job, index, way);
                 continue;
             }
             // Those that face the same way at a time.
-            let all = std::mem::take(&mut self.rays);
+            let all = self.rays;
             for way in (0..3).flat_map(|k| [(k, false), (k, true)]) {
                 self.numbers.clear();
-                self.numbers.extend((0..all.len()).filter(|i| facing(all[*i].direction) == way));
-                self.rays.clear();
-                self.rays.extend(self.numbers.iter().map(|i| all[*i]));
-                if !self.rays.is_empty() {
+                self.numbers.extend((0..all.count).filter(|i| facing(all.direction(*i)) == way));
+                self.rays.count = 0;
+                for i in &self.numbers {
+                    self.rays.push(all.direction(*i), all.nearness[*i]);
+                }
+                if self.rays.count > 0 {
                     self.follow(job, index, way);
                 }
             }
@@ -226,11 +235,10 @@ impl Tile {
     fn follow(&mut self, job: &Job<'_>, index: usize, way: (usize, bool)) {
         let target = &job.stage.targets[index];
         let origin = Origin::of_observer(&target.map);
-        self.beam.aim(way, &self.rays, &target.tree, &origin);
-        self.beam.trace(&target.tree, &origin, job.vectors);
+        self.beam.trace(way, &self.rays, &target.tree, &origin, job.vectors);
         // The plane of the triangle met last: N, and its distance times |N|.
         let (mut last, mut normal, mut over) = (NONE, DVec3::ZERO, 0.0);
-        for (number, (ray, sight)) in self.rays.iter().zip(&self.numbers).enumerate() {
+        for (number, sight) in self.numbers.iter().enumerate() {
             let found = self.beam.found(number);
             if found == NONE {
                 continue;
@@ -241,10 +249,11 @@ impl Tile {
                 normal = (b - a).cross(c - a);
                 (last, over) = (found, normal.dot(a));
             }
-            let nearness = normal.dot(ray.direction) / over;
+            let rest = self.rays.direction(number);
+            let nearness = normal.dot(rest) / over;
             let sight = &mut self.sights[*sight];
             if nearness > sight.nearness * (1.0 + SAME) {
-                *sight = Sight { nearness, target: index, leaf: found, rest: ray.direction, ..*sight };
+                *sight = Sight { nearness, target: index, leaf: found, rest, ..*sight };
             }
         }
     }
@@ -389,9 +398,8 @@ fn cone(lens: &Lens, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> (DVec3
             chord = chord.max((d - axis).length());
         }
     }
-    let half_angle = 2.0 * (0.5 * chord).min(1.0).asin();
-    // A tile of a picture of few pixels is a large part of the sky.
-    if half_angle > 0.2 { (DVec3::Z, std::f64::consts::PI) } else { (axis, 1.2 * half_angle) }
+    // A tile of a picture of few pixels is a large part of the sky; else angle and chord are nearly the same.
+    if chord > 0.2 { (DVec3::Z, std::f64::consts::PI) } else { (axis, 1.21 * chord) }
 }
 
 impl Sight {
