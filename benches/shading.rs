@@ -1,5 +1,5 @@
-//! Cost of apparent shading, stage by stage, beside a linear pass (the same z-buffer over the same apparent
-//! vertices without cutting): spheres of 1 k, 100 k and 1 M triangles at β = 0.9, 1280×720, tolerance ¼ px.
+//! Cost of exact and of apparent shading, the latter stage by stage, beside a linear pass (the same z-buffer over the same
+//! apparent vertices without cutting), and of rays: spheres of 1 k, 100 k and 1 M triangles at β = 0.9, 1280×720, tolerance ¼ px.
 //!
 //! `cargo bench --bench shading`; ratios of one run are the result, not the rates.
 
@@ -13,8 +13,9 @@ use terrell::geodesic::{Celerity, Event, Tetrad};
 use terrell::light::Shading;
 use terrell::raster::{Drawable, paint, shade, shade_again};
 use terrell::relativity::{ApparentMap, Motion, Points, PointsMut};
-use terrell::scene::{Body, Lens, Light, LightKind, Material, Mesh, Projection, Scene, View, shapes};
+use terrell::scene::{Body, Camera, Lens, Light, LightKind, Material, Mesh, Projection, Scene, View, shapes};
 use terrell::spectrum::Spectrum;
+use terrell::trace::{Look, Paths, Tracer};
 
 const REPEATS: usize = 9;
 
@@ -85,9 +86,11 @@ fn main() {
     let samples = Samples::new(1);
     let all = std::thread::available_parallelism().map_or(1, usize::from);
 
-    println!("ms, median of {REPEATS}; 'linear' is map + the same z-buffer without cutting");
     println!(
-        "{:>10} {:>7} {:>9} | {:>7} {:>9} {:>8} {:>8} | {:>8} {:>7} {:>6} | {:>7} {:>8}",
+        "ms, median of {REPEATS}; 'linear' is map + the same z-buffer without cutting; 'once', what is done once a film"
+    );
+    println!(
+        "{:>10} {:>7} {:>9} | {:>7} {:>9} {:>8} {:>8} | {:>8} {:>7} {:>7} {:>6} | {:>7} {:>7} {:>7} {:>7} | {:>7} {:>7}",
         "triangles",
         "threads",
         "pieces",
@@ -96,10 +99,15 @@ fn main() {
         "z-buffer",
         "whole",
         "linear",
-        "ratio",
-        "hit",
         "Mtri/s",
-        "Mpx/s"
+        "Mpx/s",
+        "hit",
+        "exact",
+        "/linear",
+        "whole/",
+        "once",
+        "trace",
+        "once"
     );
     let meshes = [
         ("cube", shapes::cube()),
@@ -135,14 +143,29 @@ fn main() {
                 let draw_ms = median_ms(|| draw(&seen));
                 let whole = median_ms(|| draw(&cut()));
                 let linear = median_ms(|| draw(&ApparentMesh::linear(mesh, &map)));
+                let exact = |scene: &Scene| Tracer::exact(scene, 1);
+                let [exact, trace] = [exact, Tracer::new].map(|make| {
+                    let once = median_ms(|| drop(make(&scene)));
+                    let tracer = make(&scene);
+                    let look =
+                        Look { samples: samples.offsets(), shading: &shading, paths: Paths::default() };
+                    let camera = Camera { observer, lens };
+                    let film = &mut film.borrow_mut();
+                    (median_ms(|| drop(tracer.trace(&scene, &camera, &look, film, |_, _| ()))), once)
+                });
                 println!(
-                    "{:>10} {threads:>7} {:>9} | {map_ms:>7.2} {cut_ms:>9.2} {draw_ms:>8.2} {whole:>8.2} | {linear:>8.2} {:>7.2} {:>5.0}% | {:>7.1} {:>8.1}",
+                    "{:>10} {threads:>7} {:>9} | {map_ms:>7.2} {cut_ms:>9.2} {draw_ms:>8.2} {whole:>8.2} | {linear:>8.2} {:>7.1} {:>7.1} {:>5.0}% | {:>7.2} {:>7.2} {:>7.2} {:>7.2} | {:>7.2} {:>7.2}",
                     if name.is_empty() { mesh.triangles.len().to_string() } else { (*name).to_owned() },
                     seen.triangles.len(),
-                    whole / linear,
+                    mesh.triangles.len() as f64 / linear / 1e3,
+                    pixels / linear / 1e3,
                     100.0 * hit,
-                    mesh.triangles.len() as f64 / whole / 1e3,
-                    pixels / whole / 1e3,
+                    exact.0,
+                    exact.0 / linear,
+                    whole / exact.0,
+                    exact.1,
+                    trace.0,
+                    trace.1,
                 );
             });
         }

@@ -7,9 +7,12 @@ use crate::scene::{Material, Scene};
 /// How what a pixel sees is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
-    /// Bodies are moved to where they are seen, cut, and drawn as polygons (Nollert et al. 2000, section 2): fast. There
-    /// are no shadows, and no sky.
+    /// Triangles are tested pixel by pixel in the sky of their rest frame, uncut, where they may be seen: exact and fast.
+    /// Shadows are found by rays from what is seen; surfaces do not light each other.
     #[default]
+    Exact,
+    /// Bodies are moved to where they are seen, cut, and drawn as polygons (Nollert et al. 2000, section 2), to a tolerance.
+    /// There are no shadows, and no sky.
     Apparent,
     /// Rays are followed back in time ([`crate::trace`]): with shadows, before the sky, in curved spacetime too.
     Trace,
@@ -18,6 +21,7 @@ pub enum Method {
 impl std::fmt::Display for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
+            Self::Exact => "exact",
             Self::Apparent => "apparent",
             Self::Trace => "trace",
         })
@@ -49,19 +53,22 @@ pub fn has_reflections(scene: &Scene) -> bool {
     materials().any(mirrors) || (materials().any(|m| m.is_lit(lights)) && materials().any(shines))
 }
 
+/// Whether polygons alone show all there is: without shadows, light of surfaces on each other, a sky or bent light.
+pub fn is_of_polygons(scene: &Scene) -> bool {
+    !scene.spacetime.is_curved() && scene.sky.is_none() && !has_reflections(scene) && !has_shadows(scene)
+}
+
 /// The cheapest method that is right for a scene, and why.
 pub fn cheapest(scene: &Scene, coloring: Coloring) -> (Method, &'static str) {
     if scene.spacetime.is_curved() {
         (Method::Trace, "spacetime is curved")
-    } else if coloring == Coloring::Doppler && scene.sky.is_none() {
-        (Method::Apparent, "the Doppler factor needs no light")
+    } else if coloring == Coloring::Doppler {
+        (Method::Exact, "the Doppler factor needs no light")
     } else if has_reflections(scene) {
         (Method::Trace, "surfaces light each other")
     } else if has_shadows(scene) {
-        (Method::Trace, "lights cast shadows")
-    } else if scene.sky.is_some() {
-        (Method::Trace, "there is a sky")
+        (Method::Exact, "shadows need rays from what is seen only")
     } else {
-        (Method::Apparent, "nothing casts shadows")
+        (Method::Exact, "nothing casts shadows")
     }
 }

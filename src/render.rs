@@ -98,9 +98,14 @@ impl Options {
         if scene.spacetime.is_curved() && self.method != Method::Trace {
             return Err(RenderError::OnlyRays);
         }
-        let observers = cameras.into_iter().map(|c| &c.observer);
+        let observers: Vec<_> = cameras.into_iter().map(|c| &c.observer).collect();
+        let pictures = observers.len();
         let shading = Shading::new(scene, observers, self.coloring)?.with_doppler_at(self.doppler_at);
-        let tracer = (self.method == Method::Trace).then(|| Tracer::new(scene));
+        let tracer = match self.method {
+            Method::Exact => Some(Tracer::exact(scene, pictures)),
+            Method::Trace => Some(Tracer::new(scene)),
+            Method::Apparent => None,
+        };
         Ok(Prepared { shading, tracer })
     }
 }
@@ -110,7 +115,7 @@ impl Options {
 pub struct Prepared {
     /// How its surfaces shine and are lit.
     pub shading: Shading,
-    /// Its meshes as rays are traced through them, if they are.
+    /// Its meshes as lines of sight are followed through them, if they are.
     tracer: Option<Tracer>,
 }
 
@@ -161,8 +166,9 @@ pub fn around(hole: KerrSchild) -> Curved<KerrSchild> {
 /// ε of chords, in masses: where rays are cheapest; hits are exact whatever it is.
 const SAGITTA: f64 = 0.05;
 
-/// Draws a scene: by apparent shading, every body moved to where the camera sees it (Nollert et al. 2000, Eq. 1), cut
-/// until flat triangles show it to the pixel, and drawn by a z-buffer or a painter; or by tracing rays.
+/// Draws a scene: exactly, every triangle tested where it may be seen; by apparent shading, every body moved to where the
+/// camera sees it (Nollert et al. 2000, Eq. 1), cut until flat triangles show it to the pixel, and drawn by a z-buffer or a
+/// painter; or by tracing rays.
 ///
 /// # Errors
 /// If the bodies would be cut into more pieces than allowed, or than can be painted, or a spectrum cannot be; in curved
@@ -196,7 +202,8 @@ pub fn render_again(
     let triangles = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
     if let Some(tracer) = &prepared.tracer {
         let start = Instant::now();
-        let look = Look { samples: samples.offsets(), shading, paths: options.paths };
+        let paths = if options.method == Method::Exact { Paths::default() } else { options.paths };
+        let look = Look { samples: samples.offsets(), shading, paths };
         let rays = if let (Spacetime::Kerr(hole), Some(eye)) = (&scene.spacetime, scene.eye(camera)?) {
             let space = around(*hole);
             let step = Mutex::new(step);

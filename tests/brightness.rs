@@ -258,13 +258,13 @@ fn what_needs_ray_tracing_is_traced() {
     std::fs::write(here.join("lit.toml"), scene("color = [1, 1, 1]")).unwrap();
     std::fs::write(here.join("luminous.toml"), scene("surface = \"luminous\"")).unwrap();
     let lit = |flags: &[&str]| good(&[&["render", "lit.toml", SMALL], flags].concat(), here);
-    assert!(lit(&[]).contains("ray tracing on the CPU (lights cast shadows)"));
+    assert!(lit(&[]).contains("exact shading on the CPU (shadows need rays from what is seen only)"));
     for flags in [["--method", "apparent"], ["--raster", "skia"], ["--doppler", "vertex"]] {
         let told = lit(&flags);
         assert!(told.contains("apparent shading"), "{told}");
         assert_eq!(told.lines().filter(|l| l.contains("--method trace")).count(), 1, "{told}");
     }
-    assert!(lit(&["--color", "doppler"]).contains("apparent shading"));
+    assert!(lit(&["--color", "doppler"]).contains("exact shading"));
     assert!(lit(&["--bounces", "2", "--samples", "4"]).contains("of paths of 2 reflections, noise"));
     // A lamp in the middle of the cube.
     let shut = scene("color = [1, 1, 1]").replace("position = [0, 0, 3]", "position = [0, 4, 0]");
@@ -274,9 +274,9 @@ fn what_needs_ray_tracing_is_traced() {
     std::fs::write(here.join("unlit.toml"), format!("[material.m]\nsurface = \"lit\"\n{CUBE}")).unwrap();
     assert!(good(&["render", "unlit.toml", SMALL], here).contains("nothing lights them"));
     std::fs::write(here.join("sky.toml"), "[sky]\ntexture = \"stars\"\n").unwrap();
-    assert!(good(&["render", "sky.toml", SMALL], here).contains("ray tracing"));
+    assert!(good(&["render", "sky.toml", SMALL], here).contains("exact shading"));
     let luminous = good(&["render", "luminous.toml", SMALL], here);
-    assert!(luminous.contains("apparent shading") && !luminous.contains("--method trace"), "{luminous}");
+    assert!(luminous.contains("exact shading") && !luminous.contains("--method trace"), "{luminous}");
     for (flags, word) in [
         (["--method", "trace", "--raster", "skia"], "polygons"),
         (["--method", "trace", "--doppler", "vertex"], "polygons"),

@@ -148,7 +148,7 @@ fn a_picture_is_taken_when_asked() {
     }
     let later = json(&["--time", "2.5"]);
     assert_eq!(later["camera"]["event"][0], 2.5);
-    assert_eq!(later["method"], "apparent");
+    assert_eq!(later["method"], "exact");
     assert!(later["seconds"]["whole"].as_f64().unwrap() > 0.0);
     assert!(later["pieces"].as_u64().unwrap() >= 12);
 }

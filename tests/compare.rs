@@ -49,11 +49,15 @@ fn every_method_is_compared_and_all_is_written() {
         "compare.json",
         "compare.png",
         "difference_apparent.png",
+        "difference_exact.png",
         "difference_painter.png",
+        "exact.exr",
+        "exact.png",
         "mine.txt",
         "painter.exr",
         "painter.png",
         "seen_apparent.png",
+        "seen_exact.png",
         "seen_painter.png",
         "trace.exr",
         "trace.png",
@@ -64,8 +68,15 @@ fn every_method_is_compared_and_all_is_written() {
     assert_eq!(json(&made.join("compare.json")), json(&here.join("told.json")));
     let told = &json(&made.join("compare.json"))["scenes"][0];
     let methods = told["methods"].as_array().unwrap();
-    assert_eq!((methods.len(), &methods[0]["difference"]), (3, &Value::Null));
-    for method in &methods[1..] {
+    assert_eq!((methods.len(), &methods[0]["difference"]), (4, &Value::Null));
+    let exact = &methods[1]["difference"];
+    assert_eq!(
+        (&exact["silhouette"]["pixels"], &exact["edges"]["pixels"]),
+        (&0.into(), &0.into()),
+        "{exact}"
+    );
+    assert_eq!(exact["radiance"]["worst_over_peak"], 0.0);
+    for method in &methods[2..] {
         let found = &method["difference"];
         assert_eq!(found["silhouette"]["beyond_a_pixel"], 0, "{method}");
         assert!(found["silhouette"]["pixels"].as_u64().unwrap() > 0, "outlines within ¼ px are not the same");
@@ -127,12 +138,12 @@ fn shadows_are_spoken_of() {
 fn files_are_compared_with() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    good(&["render", "cube", SMALL, "-o", "r.exr", "-q"], here);
+    good(&["render", "cube", SMALL, "-o", "r.exr", "-q", "--method=apparent"], here);
     let words = ["compare", "cube", "--reference", "r.exr", "--repeats=1", "-o", "out"];
     let said = good(&words, here);
     assert!(said.contains("96x54") && said.contains("against r.exr"), "{said}");
     let told = &json(&here.join("out/compare.json"))["scenes"][0];
-    let apparent = &told["methods"][1];
+    let apparent = &told["methods"][2];
     assert_eq!(
         (&apparent["method"], &apparent["difference"]["silhouette"]["pixels"]),
         (&"apparent".into(), &0.into())

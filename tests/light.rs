@@ -9,6 +9,7 @@ use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::geodesic::{Celerity, Event, Tetrad};
 use terrell::light::{DopplerAt, Point, Shading};
+use terrell::plan::Method;
 use terrell::relativity::{ApparentMap, Motion};
 use terrell::render::{Options, render};
 use terrell::scene::{
@@ -413,7 +414,8 @@ fn shifts_between_vertices_are_off_by_what_can_be_measured() {
     let options = Options { coloring: Coloring::Flat, ..Options::default() };
     let exact = draw(&scene, &options);
     let error = |tolerance: f64| {
-        let vertex = draw(&scene, &Options { doppler_at: DopplerAt::Vertex, tolerance, ..options.clone() });
+        let (method, doppler_at) = (Method::Apparent, DopplerAt::Vertex);
+        let vertex = draw(&scene, &Options { method, doppler_at, tolerance, ..options.clone() });
         let mut worst = 0f64;
         for i in (0..exact.body.len()).filter(|&i| exact.face[i] == vertex.face[i] && exact.face[i] >= 0) {
             let off = f64::from(vertex.doppler[i] / exact.doppler[i] - 1.0);

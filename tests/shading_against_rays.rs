@@ -7,12 +7,13 @@ mod common;
 use common::Random;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
-use terrell::film::Film;
+use terrell::film::{Film, Samples};
 use terrell::geodesic::{Celerity, Event, FourVector, Lorentz, Rest, World};
 use terrell::plan::Method;
 use terrell::relativity::Motion;
 use terrell::render::{Options, render};
 use terrell::scene::{Aim, Body, Camera, Mesh, Projection, Scene, View, shapes};
+use terrell::trace::{Look, Paths};
 
 /// A body with what rays need: origin and direction maps, corners.
 struct Target {
@@ -130,6 +131,16 @@ fn random_scene(random: &mut Random, fastest: f64) -> Scene {
     Scene::new("random", bodies, view)
 }
 
+/// By exact shading, which is to see just what rays see.
+fn listed(scene: &Scene, camera: &Camera, options: &Options) -> Film {
+    let prepared = options.prepare(scene, [camera]).unwrap();
+    let (samples, shading) = (Samples::new(options.samples), prepared.shading.seen_by(&camera.observer));
+    let look = Look { samples: samples.offsets(), shading: &shading, paths: Paths::default() };
+    let mut film = Film::new(0, 0);
+    terrell::trace::Tracer::listing(scene).trace(scene, camera, &look, &mut film, |_, _| ());
+    film
+}
+
 /// Largest γβ of a body or the camera, and how many scenes.
 fn compare(seed: u64, fastest: f64, scenes: usize) {
     let apart = 1e-6 + 1e-13 * fastest.powi(4);
@@ -138,10 +149,11 @@ fn compare(seed: u64, fastest: f64, scenes: usize) {
     for number in 0..scenes {
         let scene = random_scene(&mut random, fastest);
         let camera = scene.camera().unwrap();
-        let options = Options { tolerance: 0.1, ..Options::default() };
+        let options = Options { method: Method::Apparent, tolerance: 0.1, ..Options::default() };
         let (film, _) = render(&scene, &camera, &options, |_| ()).unwrap();
         let options = Options { method: Method::Trace, ..options };
         let (traced, _) = render(&scene, &camera, &options, |_| ()).unwrap();
+        assert!(listed(&scene, &camera, &options) == traced, "scene {number} of seed {seed}");
         let tracer = Tracer::new(&scene, &camera);
         for i in 0..film.body.len() {
             let centre = DVec2::new((i % 72) as f64 + 0.5, (i / 72) as f64 + 0.5);
@@ -249,9 +261,10 @@ fn a_wall_close_by() {
         let bodies = vec![Body { name: "wall".into(), mesh: wall.clone(), motion, clip: None }];
         let scene = Scene::new("wall", bodies, view);
         let camera = scene.camera().unwrap();
-        let (film, _) = render(&scene, &camera, &Options::default(), |_| ()).unwrap();
-        let options = Options { method: Method::Trace, ..Options::default() };
-        let (traced, _) = render(&scene, &camera, &options, |_| ()).unwrap();
+        let options = |method| Options { method, ..Options::default() };
+        let (film, _) = render(&scene, &camera, &options(Method::Apparent), |_| ()).unwrap();
+        let (traced, _) = render(&scene, &camera, &options(Method::Trace), |_| ()).unwrap();
+        assert!(listed(&scene, &camera, &options(Method::Trace)) == traced, "{number}");
         let tracer = Tracer::new(&scene, &camera);
         for i in 0..film.body.len() {
             let centre = DVec2::new((i % 32) as f64 + 0.5, (i / 32) as f64 + 0.5);

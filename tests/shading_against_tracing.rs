@@ -5,7 +5,7 @@
 use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::measure::{Comparison, Corners, Figures, Mark, Reference};
-use terrell::plan::{Method, cheapest};
+use terrell::plan::{Method, is_of_polygons};
 use terrell::render::{Options, Raster, render};
 use terrell::scene::{Camera, Scene, builtin_scenes};
 use terrell::trace::{Look, Paths, Tracer};
@@ -17,11 +17,7 @@ fn scenes() -> impl Iterator<Item = Scene> {
         scene.view.size = SIZE;
         scene
     };
-    builtin_scenes().iter().map(|scene| scene.scene()).filter(is_apparent).map(small)
-}
-
-fn is_apparent(scene: &Scene) -> bool {
-    cheapest(scene, Coloring::Spectral).0 == Method::Apparent
+    builtin_scenes().iter().map(|scene| scene.scene()).filter(is_of_polygons).map(small)
 }
 
 fn draw(scene: &Scene, camera: &Camera, method: Method, raster: Raster) -> Film {

@@ -309,6 +309,7 @@ impl Done<'_> {
             take.animation.fps,
             panel.scene.spacetime,
             match take.options.method {
+                Method::Exact => "exact shading",
                 Method::Apparent => "apparent shading",
                 Method::Trace => "ray tracing",
             },

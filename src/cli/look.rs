@@ -60,9 +60,10 @@ pub struct LookFlags {
     /// Projection
     #[arg(long, value_enum)]
     camera: Option<CameraFlag>,
-    /// Largest distance between a drawn edge and its exact image; cost grows as 1/√ for edges, 1/ for faces
-    #[arg(long, value_name = "PX", value_parser = number, default_value = "0.25")]
-    pub tolerance: f64,
+    /// Largest distance between a drawn edge and its exact image, where triangles are cut: asks for --method apparent. Cost
+    /// grows as 1/√ for edges, 1/ for faces [default: 0.25]
+    #[arg(long, value_name = "PX", value_parser = number)]
+    tolerance: Option<f64>,
     /// Samples a pixel [default: 1, or 64 where paths are traced]
     #[arg(long, value_name = "N", value_parser = count)]
     samples: Option<u32>,
@@ -168,7 +169,9 @@ impl DevelopFlags {
 enum MethodFlag {
     /// The cheapest that is right for the scene
     Auto,
-    /// Polygons, moved to where they are seen: without shadows, in flat spacetime
+    /// Every triangle tested where it may be seen, exactly: with shadows, in flat spacetime
+    Exact,
+    /// Polygons, moved to where they are seen, to a tolerance: without shadows, in flat spacetime
     Apparent,
     /// Rays, followed back in time: with shadows, before the sky, past black holes
     Trace,
@@ -216,11 +219,13 @@ enum RasterFlag {
 
 impl LookFlags {
     pub fn options(&self) -> Result<Options, Fault> {
-        if self.tolerance <= 0.0 {
-            return Err(format!("--tolerance {} is not above 0 px", self.tolerance).into());
+        let usual = Options::default();
+        let tolerance = self.tolerance.unwrap_or(usual.tolerance);
+        if tolerance <= 0.0 {
+            return Err(format!("--tolerance {tolerance} is not above 0 px").into());
         }
         Ok(Options {
-            tolerance: self.tolerance,
+            tolerance,
             samples: self.samples.unwrap_or(1),
             coloring: self.color.coloring(),
             doppler_at: match self.doppler {
@@ -231,7 +236,7 @@ impl LookFlags {
                 RasterFlag::Cpu => Raster::Cpu,
                 RasterFlag::Skia => Raster::Skia,
             },
-            ..Options::default()
+            ..usual
         })
     }
 
@@ -240,6 +245,8 @@ impl LookFlags {
         // What only polygons have.
         let of_polygons = if self.raster == RasterFlag::Skia {
             Some("--raster skia")
+        } else if self.tolerance.is_some() {
+            Some("--tolerance")
         } else if self.doppler == DopplerFlag::Vertex {
             Some("--doppler vertex")
         } else {
@@ -250,15 +257,19 @@ impl LookFlags {
             (MethodFlag::Trace, Some(flag)) => {
                 return Err(format!("{flag} is about polygons; rays (--method trace) have none").into());
             }
+            (MethodFlag::Exact, Some(flag)) => {
+                return Err(format!("{flag} is about polygons that are cut; --method exact cuts none").into());
+            }
             (MethodFlag::Trace, None) => (Method::Trace, None),
+            (MethodFlag::Exact, None) => (Method::Exact, None),
             (MethodFlag::Auto, None) if self.bounces.is_some_and(|n| n > 0) => (Method::Trace, None),
             (MethodFlag::Auto, None) => {
                 let (method, why) = cheapest(scene, options.coloring);
                 (method, Some(why))
             }
         };
-        if scene.spacetime.is_curved() && method == Method::Apparent {
-            let flag = of_polygons.unwrap_or("--method apparent");
+        if scene.spacetime.is_curved() && method != Method::Trace {
+            let flag = of_polygons.map_or_else(|| format!("--method {method}"), str::to_owned);
             let why =
                 "is for flat spacetime; in curved spacetime only rays show what is seen, so leave it out";
             return Err(format!("{flag} {why}").into());
@@ -270,12 +281,13 @@ impl LookFlags {
         options.method = method;
         match method {
             Method::Trace => self.set_paths(options, scene),
-            Method::Apparent if self.bounces.is_some_and(|n| n > 0) => {
-                return Err(
-                    "--bounces is about rays; polygons (--method apparent) do not light each other".into()
-                );
+            Method::Exact | Method::Apparent if self.bounces.is_some_and(|n| n > 0) => {
+                return Err(format!(
+                    "--bounces is about rays; with --method {method} surfaces do not light each other"
+                )
+                .into());
             }
-            Method::Apparent => {}
+            Method::Exact | Method::Apparent => {}
         }
         Ok(why)
     }

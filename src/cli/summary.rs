@@ -199,8 +199,9 @@ pub fn light_notes(scene: &Scene, options: &Options) -> Vec<String> {
     }
     if options.method != Method::Apparent {
         let alone = colored && has_reflections(scene) && options.paths.bounces == 0;
-        let note = "light of surfaces on each other is not followed; --bounces 4 follows it";
-        return alone.then(|| note.to_owned()).into_iter().collect();
+        let follows = if options.method == Method::Exact { "--method trace" } else { "--bounces 4" };
+        let note = || format!("light of surfaces on each other is not followed; {follows} follows it");
+        return alone.then(note).into_iter().collect();
     }
     let sky = scene.sky.is_some().then(|| "the sky is not there".to_owned());
     let notes = shadow_note(scene, options.coloring).into_iter().chain(sky);
@@ -224,13 +225,16 @@ pub fn method_in_words(options: &Options, report: &Report, why: Option<&str>) ->
     match (&report.rays, options.raster) {
         (Some(rays), _) => {
             let Count { primary, shadow, path, .. } = rays.count;
-            let mut words = format!(
-                "ray tracing on the CPU{why}, {} triangles, {} rays",
-                report.triangles,
-                count_in_words(primary)
-            );
+            let mut words = match options.method {
+                Method::Exact => format!("exact shading on the CPU{why}, {} triangles", report.triangles),
+                _ => format!(
+                    "ray tracing on the CPU{why}, {} triangles, {} rays",
+                    report.triangles,
+                    count_in_words(primary)
+                ),
+            };
             if shadow > 0 {
-                words.push_str(&format!(", {} to lights", count_in_words(shadow)));
+                words.push_str(&format!(", {} rays to lights", count_in_words(shadow)));
             }
             if options.paths.bounces > 0 {
                 let bounces = options.paths.bounces;

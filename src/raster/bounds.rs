@@ -4,21 +4,21 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Pixels, the ends excluded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Rect {
+pub(crate) struct Rect {
     pub x: [u32; 2],
     pub y: [u32; 2],
 }
 
 /// Finds the pixels a triangle can cover: never too few.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounder<'a> {
+pub(crate) struct Bounder<'a> {
     lens: &'a Lens,
     /// Least and greatest offset of a sample in its pixel.
     samples: [DVec2; 2],
 }
 
 /// For what single-precision screen positions of vertices may be off by, and more.
-const SLACK_PX: f64 = 0.01;
+pub(crate) const SLACK_PX: f64 = 0.01;
 
 impl<'a> Bounder<'a> {
     pub fn new(lens: &'a Lens, samples: [[f64; 2]; 2]) -> Self {
@@ -48,8 +48,44 @@ impl<'a> Bounder<'a> {
             Projection::Pinhole if corners().iter().all(|v| v.z <= 0.0) => [None; 2],
             // Across the camera plane: anywhere; bands and rows reject what the planes exclude.
             Projection::Pinhole => [self.everything(), None],
-            Projection::Fisheye => self.of_fisheye(corners()),
-            Projection::Panorama => self.of_panorama(corners()),
+            Projection::Fisheye => self.of_fisheye(cone(&corners())),
+            Projection::Panorama => self.of_panorama(cone(&corners())),
+        }
+    }
+
+    /// Where points are on a pinhole's picture; none if not all of them are well before the camera.
+    #[inline]
+    pub fn projected(&self, points: &[DVec3; 6]) -> Option<[DVec2; 6]> {
+        let [mut nearest, mut size] = [f64::INFINITY, 0.0];
+        for p in points {
+            // NaN is not less than anything, and shows in the sum.
+            nearest = if p.z < nearest { p.z } else { nearest };
+            size += p.abs().element_sum();
+        }
+        // Nearer to the camera plane, rounding is too large on the picture.
+        let fits = self.lens.projection() == Projection::Pinhole && nearest > 1e-9 * size && size < 1e300;
+        let (focal, middle) = (self.lens.focal().x, self.lens.middle());
+        fits.then(|| points.map(|p| middle + DVec2::new(p.x, -p.y) * (focal / p.z)))
+    }
+
+    /// The pixels whose samples may see something within the convex hull of points, in the camera's axes.
+    #[inline]
+    pub fn of_hull(&self, points: &[DVec3; 6]) -> [Option<Rect>; 2] {
+        match self.lens.projection() {
+            Projection::Pinhole => {
+                if let Some(places) = self.projected(points) {
+                    let (mut low, mut high) = (places[0], places[0]);
+                    for p in &places[1..] {
+                        (low, high) = (low.min(*p), high.max(*p));
+                    }
+                    return [self.rect([low.x, high.x], [low.y, high.y]), None];
+                }
+                let size = points.iter().fold(0.0f64, |size, p| size.max(p.abs().max_element()));
+                let behind = points.iter().all(|p| p.z < -1e-9 * size);
+                [self.everything().filter(|_| !behind), None]
+            }
+            Projection::Fisheye => self.of_fisheye(cone(points)),
+            Projection::Panorama => self.of_panorama(cone(points)),
         }
     }
 
@@ -72,8 +108,8 @@ impl<'a> Bounder<'a> {
         })
     }
 
-    fn of_fisheye(&self, corners: [DVec3; 3]) -> [Option<Rect>; 2] {
-        let Some((axis, half)) = cone(corners) else { return [self.everything(), None] };
+    fn of_fisheye(&self, cone: Option<(DVec3, f64)>) -> [Option<Rect>; 2] {
+        let Some((axis, half)) = cone else { return [self.everything(), None] };
         let theta = axis.truncate().length().atan2(axis.z);
         if theta + half >= PI {
             return [self.everything(), None];
@@ -103,8 +139,8 @@ impl<'a> Bounder<'a> {
         [self.rect([low.x, high.x], [low.y, high.y]), None]
     }
 
-    fn of_panorama(&self, corners: [DVec3; 3]) -> [Option<Rect>; 2] {
-        let Some((axis, half)) = cone(corners) else { return [self.everything(), None] };
+    fn of_panorama(&self, cone: Option<(DVec3, f64)>) -> [Option<Rect>; 2] {
+        let Some((axis, half)) = cone else { return [self.everything(), None] };
         let (width, height) = (f64::from(self.lens.width()), f64::from(self.lens.height()));
         let latitude = axis.y.clamp(-1.0, 1.0).asin();
         let y = |latitude: f64| (0.5 - latitude / PI) * height;
@@ -127,11 +163,11 @@ impl<'a> Bounder<'a> {
     }
 }
 
-/// The cone of directions that holds a triangle: unit axis and half-angle, a little wide. None where it is not
+/// The cone of directions that holds points' convex hull: unit axis and half-angle, a little wide. None where it is not
 /// surely narrower than a half-sky.
-fn cone(corners: [DVec3; 3]) -> Option<(DVec3, f64)> {
+fn cone<const N: usize>(corners: &[DVec3; N]) -> Option<(DVec3, f64)> {
     let units = corners.map(DVec3::normalize_or_zero);
-    let axis = (units[0] + units[1] + units[2]).normalize_or_zero();
+    let axis = units.iter().sum::<DVec3>().normalize_or_zero();
     let sine_and_cosine = |u: &DVec3| (u.cross(axis).length(), u.dot(axis));
     let half = units.iter().map(sine_and_cosine).map(|(s, c)| s.atan2(c)).fold(0.0, f64::max);
     (axis != DVec3::ZERO && half < 0.45 * PI).then_some((axis, half + 1e-9))

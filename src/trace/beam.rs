@@ -227,6 +227,48 @@ impl Beam {
         }
     }
 
+    /// As [`trace`](Self::trace), where it is known which leaves may be met.
+    pub fn try_leaves(
+        &mut self,
+        way: (usize, bool),
+        rays: &Directed,
+        tree: &Tree,
+        leaves: &[u32],
+        origin: &Origin<'_>,
+        vectors: bool,
+    ) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if vectors && x86::has_avx2() {
+                // SAFETY: the processor has both.
+                unsafe { self.try_avx2(way, rays, tree, leaves, origin) }
+            } else {
+                // SAFETY: every x86-64 processor has SSE2.
+                unsafe { self.try_with::<x86::Sse2>(way, rays, tree, leaves, origin) }
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            let _ = vectors;
+            // SAFETY: needs nothing.
+            unsafe { self.try_with::<super::lanes::One>(way, rays, tree, leaves, origin) }
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn try_avx2(
+        &mut self,
+        way: (usize, bool),
+        rays: &Directed,
+        tree: &Tree,
+        leaves: &[u32],
+        origin: &Origin<'_>,
+    ) {
+        // SAFETY: the caller has made sure.
+        unsafe { self.try_with::<x86::Avx2>(way, rays, tree, leaves, origin) }
+    }
+
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
     fn trace_avx2(&mut self, way: (usize, bool), rays: &Directed, tree: &Tree, origin: &Origin<'_>) {
@@ -279,24 +321,52 @@ impl Beam {
             }
             let mut any = false;
             for number in node.first..node.first + node.count {
-                let leaf = &tree.leaves[number as usize];
-                let [a, b, c] = &leaf.corners;
-                let a = self.turned(origin.to(*a) * unit);
-                let b = self.turned(origin.to(*b) * unit);
-                let c = self.turned(origin.to(*c) * unit);
-                let Some(edges) = self.edges(a, b, c, leaf.one_sided) else { continue };
                 // SAFETY: as this function.
-                let (nearer, doubtful) = unsafe { self.meet::<L>(&edges, number) };
-                any |= nearer;
-                if doubtful {
-                    any |= self.settle(tree, origin, unit, &edges, number);
-                }
+                any |= unsafe { self.meet_leaf::<L>(tree, origin, unit, number) };
             }
             if any {
                 farthest = self.farthest(place);
             }
         }
         self.stack = stack;
+    }
+
+    /// As [`trace_with`](Self::trace_with), of some leaves only.
+    #[inline(always)]
+    unsafe fn try_with<L: Lanes>(
+        &mut self,
+        way: (usize, bool),
+        rays: &Directed,
+        tree: &Tree,
+        leaves: &[u32],
+        origin: &Origin<'_>,
+    ) {
+        self.aim(way, rays, tree, origin);
+        let unit = tree.scale * inverse_unit(origin.place(tree).0);
+        for number in leaves {
+            // SAFETY: as this function.
+            unsafe { self.meet_leaf::<L>(tree, origin, unit, *number) };
+        }
+    }
+
+    /// Whether a leaf is nearer to any ray than what is known.
+    #[inline(always)]
+    unsafe fn meet_leaf<L: Lanes>(
+        &mut self,
+        tree: &Tree,
+        origin: &Origin<'_>,
+        unit: f64,
+        number: u32,
+    ) -> bool {
+        let leaf = tree.leaf(number);
+        let [a, b, c] = &leaf.corners;
+        let a = self.turned(origin.to(*a) * unit);
+        let b = self.turned(origin.to(*b) * unit);
+        let c = self.turned(origin.to(*c) * unit);
+        let Some(edges) = self.edges(a, b, c, leaf.one_sided) else { return false };
+        // SAFETY: as this function.
+        let (nearer, doubtful) = unsafe { self.meet::<L>(&edges, number) };
+        nearer | (doubtful && self.settle(tree, origin, unit, &edges, number))
     }
 
     /// The farthest any ray still has to look, in the tree's units.
@@ -401,8 +471,8 @@ impl Beam {
             if !inside || (at(triangle.nearness) - known).abs() > 2.0 * f64::from(CLOSE) * known {
                 continue;
             }
-            let exact = |number: u32| self.nearness(&tree.leaves[number as usize], origin, unit, i);
-            let face = |number: u32| tree.leaves[number as usize].face;
+            let exact = |number: u32| self.nearness(&tree.leaf(number), origin, unit, i);
+            let face = |number: u32| tree.leaf(number).face;
             let (new, old) = (exact(number), self.found(i));
             if old == NONE || is_before((new, face(number)), (exact(old), face(old))) {
                 self.rays.nearness[i] = self.rays.nearness[i].max(new as f32);

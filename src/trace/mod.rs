@@ -16,6 +16,7 @@ mod chord;
 mod curved;
 mod emitters;
 mod lanes;
+mod lists;
 mod origin;
 mod path;
 mod random;
@@ -25,11 +26,12 @@ mod tile;
 mod tree;
 
 use crate::film::Film;
-use crate::light::SeenShading;
+use crate::light::{SeenShading, has_shadows};
 use crate::scene::{Camera, Eye, Lens, Scene};
 use crate::spectrum::luminance;
 use chord::Goal;
 use emitters::Emitters;
+use lists::Lists;
 use path::World;
 use rayon::prelude::*;
 use stage::Stage;
@@ -89,12 +91,58 @@ fn noise(half: &[[f32; 3]], all: &[[f32; 3]]) -> Option<f64> {
 pub struct Tracer {
     /// By body; none of those that are posed anew for every moment.
     trees: Vec<Option<Arc<Tree>>>,
+    finder: Finder,
     vectors: bool,
+}
+
+/// How what a line of sight meets first is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Finder {
+    /// By going through trees of boxes.
+    Boxes,
+    /// By lists of what may be seen in each tile.
+    Lists {
+        /// Whether something else will go through the trees.
+        with_boxes: bool,
+    },
+}
+
+/// Hierarchies of fewer triangles are built in a few milliseconds.
+const FEW: usize = 1 << 15;
+
+/// A hierarchy takes as long to build as is lost without it in so many pictures.
+const MANY: usize = 30;
+
+impl Finder {
+    fn tree(self, mesh: &Arc<crate::scene::Mesh>) -> Arc<Tree> {
+        Arc::new(match self {
+            Self::Boxes | Self::Lists { with_boxes: true } => Tree::new(mesh),
+            Self::Lists { with_boxes: false } => Tree::flat(mesh),
+        })
+    }
 }
 
 impl Tracer {
     /// Builds what is needed for a scene's meshes; those that several bodies share, once.
     pub fn new(scene: &Scene) -> Self {
+        Self::with(scene, Finder::Boxes)
+    }
+
+    /// For exact shading: what a tile of pixels may see is found from where every triangle may be seen, and only for shadows
+    /// are rays followed, so that without them no hierarchy is built. Only where that does not matter, because triangles are
+    /// few or pictures many, it is quicker to go through one. Either way it sees just what rays see. Paths are not for it, nor
+    /// is curved spacetime.
+    pub fn exact(scene: &Scene, pictures: usize) -> Self {
+        let triangles: usize = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
+        if triangles < FEW || pictures > MANY { Self::new(scene) } else { Self::listing(scene) }
+    }
+
+    /// As [`exact`](Self::exact), however few triangles or many pictures there are.
+    pub fn listing(scene: &Scene) -> Self {
+        Self::with(scene, Finder::Lists { with_boxes: has_shadows(scene) })
+    }
+
+    fn with(scene: &Scene, finder: Finder) -> Self {
         let mut known: Vec<(*const crate::scene::Mesh, Arc<Tree>)> = Vec::new();
         let tree = |body: &crate::scene::Body| {
             if body.clip.is_some() {
@@ -104,11 +152,11 @@ impl Tracer {
             if let Some((_, tree)) = known.iter().find(|(m, _)| *m == mesh) {
                 return Some(tree.clone());
             }
-            let tree = Arc::new(Tree::new(&body.mesh));
+            let tree = finder.tree(&body.mesh);
             known.push((mesh, tree.clone()));
             Some(tree)
         };
-        Self { trees: scene.bodies.iter().map(tree).collect(), vectors: true }
+        Self { trees: scene.bodies.iter().map(tree).collect(), finder, vectors: true }
     }
 
     /// The same for any x86-64 processor, without AVX2: for measuring.
@@ -141,7 +189,9 @@ impl Tracer {
         let tally = tally(shading);
         let to_lights = &tally[..];
         let world = world.as_ref();
-        let job = Job { stage: &stage, lens, shading, sky, samples, vectors, to_lights, world };
+        let lists = self.lists(&stage, lens, samples);
+        let lists = lists.as_deref();
+        let job = Job { stage: &stage, lists, lens, shading, sky, samples, vectors, to_lights, world };
         let all = samples.len();
         let passes = if follows { PASSES.min(all) } else { 1 };
         let mut traced = Traced::default();
@@ -152,7 +202,7 @@ impl Tracer {
             let count = film
                 .bands(SIDE)
                 .enumerate()
-                .map_init(Tile::default, |tile, (index, rows)| {
+                .map_init(Box::<Tile>::default, |tile, (index, rows)| {
                     tile.draw_band(&job, index as u32 * SIDE, range.clone(), rows)
                 })
                 .reduce(Count::default, Count::with);
@@ -180,10 +230,13 @@ impl Tracer {
         let vectors = self.vectors;
         let tally = tally(shading);
         let to_lights = &tally[..];
-        let job = Job { stage: &stage, lens, shading, sky: None, samples, vectors, to_lights, world: None };
+        let lists = self.lists(&stage, lens, samples);
+        let lists = lists.as_deref();
+        let (sky, world) = (None, None);
+        let job = Job { stage: &stage, lists, lens, shading, sky, samples, vectors, to_lights, world };
         (0..camera.lens.height().div_ceil(SIDE))
             .into_par_iter()
-            .map_init(Tile::default, |tile, band| tile.cast_band(&job, band * SIDE))
+            .map_init(Box::<Tile>::default, |tile, band| tile.cast_band(&job, band * SIDE))
             .reduce(Count::default, Count::with)
     }
 
@@ -228,10 +281,22 @@ impl Tracer {
         Traced { count, ..Traced::default() }
     }
 
+    /// Where triangles may be seen, if that is how they are found.
+    fn lists(&self, stage: &Stage, lens: &Lens, samples: &[[f64; 2]]) -> Option<Vec<Lists>> {
+        let range = |k: usize| {
+            let values = samples.iter().map(|s| s[k]);
+            [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let [x, y] = [range(0), range(1)];
+        let lists =
+            || stage.targets.iter().map(|t| Lists::new(t, lens, [[x[0], y[0]], [x[1], y[1]]])).collect();
+        (self.finder != Finder::Boxes).then(lists)
+    }
+
     fn stage(&self, scene: &Scene, camera: &Camera, lit: bool) -> Stage {
         let bodies = scene.bodies.iter().enumerate().zip(&self.trees).map(|((index, body), tree)| {
             let mesh = body.mesh_seen(&camera.observer);
-            let tree = tree.clone().unwrap_or_else(|| Arc::new(Tree::new(&mesh)));
+            let tree = tree.clone().unwrap_or_else(|| self.finder.tree(&mesh));
             (index, body.motion, mesh, tree)
         });
         Stage::new(bodies.collect(), camera, lit)

@@ -79,7 +79,7 @@ impl Target {
     /// The triangle of a leaf, from the observer in the rest frame.
     #[inline]
     pub fn facet(&self, leaf: u32) -> Facet<'_> {
-        let leaf = &self.tree.leaves[leaf as usize];
+        let leaf = self.tree.leaf(leaf);
         let [a, b, c] = &leaf.corners;
         let map = &self.map;
         let corners = [map.offset_rest(*a), map.offset_rest(*b), map.offset_rest(*c)];

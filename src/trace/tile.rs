@@ -1,9 +1,10 @@
 use super::beam::{Beam, Directed, NONE, RAYS, SAME, facing};
 use super::bundle::Bundle;
+use super::lists::Lists;
 use super::origin::Origin;
 use super::path::{self, Vertex, World};
 use super::random::Random;
-use super::stage::{Sights, Stage, Target};
+use super::stage::{Sights, Stage};
 use crate::film::Rows;
 use crate::light::{Facet, Points, SeenShading, Ways};
 use crate::scene::{Lens, Sky};
@@ -21,7 +22,13 @@ pub(super) struct Tile {
     beam: Beam,
     bundle: Bundle,
     paths: path::Scratch,
+    /// First row of pixels, and column of tiles.
     top: u32,
+    column: u32,
+    /// Triangles of many tiles that may be seen in the row of tiles, by target and column.
+    large: Vec<Vec<u32>>,
+    /// Triangles of one body that may be seen in the tile.
+    candidates: Vec<u32>,
     sights: Vec<Sight>,
     /// Bodies that may be seen in the tile.
     met: Vec<usize>,
@@ -109,6 +116,8 @@ struct Sight {
 #[derive(Clone, Copy)]
 pub(super) struct Job<'a> {
     pub stage: &'a Stage,
+    /// Where triangles may be seen, by target; none where trees are gone through.
+    pub lists: Option<&'a [Lists]>,
     pub lens: &'a Lens,
     pub shading: &'a SeenShading<'a>,
     /// What lies behind everything, and the map from the observer to its frame.
@@ -146,12 +155,23 @@ impl Tile {
         self.top = top;
         let width = job.lens.width();
         let height = SIDE.min(job.lens.height() - top);
+        let columns = width.div_ceil(SIDE) as usize;
+        self.list_large(job, columns);
         for left in (0..width).step_by(SIDE as usize) {
             let size = [SIDE.min(width - left), height];
             let (axis, half_angle) = cone(job.lens, [left, top], size);
             self.met.clear();
+            self.column = left / SIDE;
             let targets = job.stage.targets.iter().enumerate();
-            self.met.extend(targets.filter(|(_, t)| t.outline.meets(axis, half_angle)).map(|(i, _)| i));
+            let met = targets.filter(|(_, t)| t.outline.meets(axis, half_angle)).map(|(i, _)| i);
+            let may_be_met = |i: &usize| match job.lists {
+                None => true,
+                Some(lists) => {
+                    let large = &self.large[*i * columns + self.column as usize];
+                    !large.is_empty() || !lists[*i].of_tile(top / SIDE, self.column).is_empty()
+                }
+            };
+            self.met.extend(met.filter(may_be_met));
             if self.met.is_empty() && job.sky.is_none() {
                 // Rays they are all the same.
                 self.count.primary += pass.len() as u64 * u64::from(size[0] * size[1]);
@@ -166,6 +186,18 @@ impl Tile {
         }
         self.count.path += std::mem::take(&mut self.paths.rays);
         self.count
+    }
+
+    /// Sorts what is seen in many tiles into those of the row.
+    fn list_large(&mut self, job: &Job<'_>, columns: usize) {
+        let Some(lists) = job.lists else { return };
+        self.large.iter_mut().for_each(Vec::clear);
+        self.large.resize_with(lists.len() * columns, Vec::new);
+        for (lists, large) in lists.iter().zip(self.large.chunks_mut(columns)) {
+            for ([from, to], number) in lists.large_of_row(self.top / SIDE) {
+                large[from as usize..to as usize].iter_mut().for_each(|tile| tile.push(number));
+            }
+        }
     }
 
     /// Lines of sight of a sample of all pixels.
@@ -204,6 +236,12 @@ impl Tile {
             if self.sights.is_empty() {
                 return;
             }
+            if let Some(lists) = job.lists {
+                self.candidates.clear();
+                let (lists, column) = (&lists[index], self.column as usize);
+                self.candidates.extend_from_slice(lists.of_tile(self.top / SIDE, self.column));
+                self.candidates.extend_from_slice(&self.large[index * lists.columns + column]);
+            }
             self.rays.count = self.sights.len();
             target.rest_directions(&self.seen, &mut self.rays.directions, job.vectors);
             for (nearness, sight) in self.rays.nearness.iter_mut().zip(&self.sights) {
@@ -235,7 +273,13 @@ impl Tile {
     fn follow(&mut self, job: &Job<'_>, index: usize, way: (usize, bool)) {
         let target = &job.stage.targets[index];
         let origin = Origin::of_observer(&target.map);
-        self.beam.trace(way, &self.rays, &target.tree, &origin, job.vectors);
+        let tree = &target.tree;
+        match job.lists {
+            None => self.beam.trace(way, &self.rays, tree, &origin, job.vectors),
+            Some(_) => {
+                self.beam.try_leaves(way, &self.rays, tree, &self.candidates, &origin, job.vectors);
+            }
+        }
         // The plane of the triangle met last: N, and its distance times |N|.
         let (mut last, mut normal, mut over) = (NONE, DVec3::ZERO, 0.0);
         for (number, sight) in self.numbers.iter().enumerate() {
@@ -243,7 +287,7 @@ impl Tile {
             if found == NONE {
                 continue;
             }
-            let leaf = &target.tree.leaves[found as usize];
+            let leaf = target.tree.leaf(found);
             if found != last {
                 let [a, b, c] = leaf.corners.map(|c| origin.to(c));
                 normal = (b - a).cross(c - a);
@@ -321,6 +365,8 @@ impl Tile {
         let weight = 1.0 / job.samples.len() as f32;
         // Each of many samples stands for a part of the pixel.
         let spread = f64::from(weight.sqrt());
+        // The triangle met last.
+        let mut last: Option<(usize, u32, Facet<'_>)> = None;
         for (number, sight) in self.sights.iter().enumerate() {
             if sight.leaf == NONE {
                 if let Some((sky, world_from_observer)) = &job.sky {
@@ -328,7 +374,13 @@ impl Tile {
                 }
                 continue;
             }
-            let (target, facet, at) = sight.meets(job.stage);
+            let target = &job.stage.targets[sight.target];
+            let facet = match last {
+                Some((of, leaf, facet)) if (of, leaf) == (sight.target, sight.leaf) => facet,
+                _ => target.facet(sight.leaf),
+            };
+            last = Some((sight.target, sight.leaf, facet));
+            let at = sight.rest / sight.nearness;
             let doppler = sight.length / target.sky.boosted(sight.direction, sight.length).length;
             let sights = || {
                 // A look along the line of sight itself where there is no neighbour: as sharp as can be.
@@ -428,12 +480,5 @@ impl Sight {
         if centre {
             rows.doppler[self.pixel] = doppler as f32;
         }
-    }
-
-    /// The body, the triangle, and where on it, both from the observer in the rest frame.
-    #[inline]
-    fn meets<'a>(&self, stage: &'a Stage) -> (&'a Target, Facet<'a>, DVec3) {
-        let target = &stage.targets[self.target];
-        (target, target.facet(self.leaf), self.rest / self.nearness)
     }
 }

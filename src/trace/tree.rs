@@ -3,6 +3,8 @@ use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
+use rayon::prelude::*;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A bounding volume hierarchy of a mesh at rest: whatever moves, it is built once.
@@ -13,6 +15,8 @@ use std::time::Duration;
 pub(super) struct Tree {
     pub nodes: Vec<Node>,
     pub leaves: Vec<Leaf>,
+    /// Where there are no boxes: leaves are the mesh's triangles in its order, and are made as they are asked for.
+    mesh: Option<Arc<Mesh>>,
     /// The mesh's middle.
     pub centre: DVec3,
     /// 1 over its greatest side.
@@ -53,47 +57,125 @@ impl Boundable for Bounds {
 
 impl Tree {
     pub fn new(mesh: &Mesh) -> Self {
-        let (low, high) = mesh.bounds().unwrap_or_default();
-        let centre = 0.5 * (low + high);
-        let size = (high - low).max_element();
-        let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+        let empty = Self::empty(mesh);
+        let Self { centre, scale, .. } = empty;
         let bounds: Vec<Bounds> = (0..mesh.triangles.len())
             .map(|t| {
                 let corners = mesh.corners(t).map(|c| (c - centre) * scale);
                 let low = corners[0].min(corners[1]).min(corners[2]);
                 let high = corners[0].max(corners[1]).max(corners[2]);
+                if !corners.iter().all(|c| c.abs().max_element() < 1e30 && c.is_finite()) {
+                    return Bounds(Aabb::new(Vec3A::ZERO, Vec3A::ZERO));
+                }
                 // A rounding of the difference, and one more.
                 let out = |v: DVec3, way: f64| (v + way * 2e-7 * (v.abs() + 1e-30)).as_vec3a();
                 Bounds(Aabb::new(out(low, -1.0) - Vec3A::splat(1e-30), out(high, 1.0) + Vec3A::splat(1e-30)))
             })
             .collect();
-        let params = if bounds.len() > 200_000 {
-            BvhBuildParams::fast_build()
-        } else {
-            BvhBuildParams::medium_build()
-        };
-        let tree = build_bvh2(&bounds, params, &mut Duration::default());
-        let nodes = tree
-            .nodes
-            .iter()
-            .map(|n| Node {
-                min: n.aabb().min.to_array(),
-                first: n.first_index,
-                max: n.aabb().max.to_array(),
-                count: n.prim_count,
-            })
-            .collect();
-        let leaves = tree
-            .primitive_indices
-            .iter()
-            .map(|&face| Leaf {
-                corners: mesh.corners(face as usize),
-                face,
-                one_sided: mesh.is_one_sided(face as usize),
-            })
-            .collect();
-        let farthest = (0..mesh.vertex_count()).map(|v| mesh.vertex(v as u32).distance(centre));
-        Self { nodes, leaves, centre, scale, radius: farthest.fold(0.0, f64::max) }
+        let (nodes, order) = if crowd(&bounds) > CROWD { halved(&bounds) } else { built(&bounds) };
+        let leaves = order.iter().map(|&face| Leaf::new(mesh, face)).collect();
+        Self { nodes, leaves, ..empty }
+    }
+
+    /// Without boxes, for who knows where to look.
+    pub fn flat(mesh: &Arc<Mesh>) -> Self {
+        Self { mesh: Some(mesh.clone()), ..Self::empty(mesh) }
+    }
+
+    /// How many leaves there are.
+    pub fn count(&self) -> usize {
+        self.mesh.as_ref().map_or(self.leaves.len(), |mesh| mesh.triangles.len())
+    }
+
+    /// A leaf.
+    #[inline(always)]
+    pub fn leaf(&self, number: u32) -> Leaf {
+        match &self.mesh {
+            None => self.leaves[number as usize],
+            Some(mesh) => Leaf::new(mesh, number),
+        }
+    }
+
+    fn empty(mesh: &Mesh) -> Self {
+        let (low, high) = mesh.bounds().unwrap_or_default();
+        let centre = 0.5 * (low + high);
+        let size = (high - low).max_element();
+        // Of what a clip has made of it, no number may be left; none of that is ever hit.
+        let (centre, size) = if size.is_finite() { (centre, size) } else { (DVec3::ZERO, 0.0) };
+        let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
+        let vertices = (0..mesh.vertex_count() as u32).into_par_iter().with_min_len(1 << 12);
+        let radius = vertices.map(|v| mesh.vertex(v).distance(centre)).reduce(|| 0.0, f64::max);
+        Self { nodes: Vec::new(), leaves: Vec::new(), mesh: None, centre, scale, radius }
+    }
+}
+
+/// More boxes with their middles in one place than a tree for good meshes is built of: it would become a chain.
+const CROWD: usize = 256;
+
+/// The most boxes with their middles in one place, to a two-millionth of the mesh.
+fn crowd(bounds: &[Bounds]) -> usize {
+    let place = |b: &Bounds| {
+        let steps = (b.0.min + b.0.max + Vec3A::ONE) * (0.5 * (1 << 21) as f32);
+        let [x, y, z] = steps.to_array().map(|c| c as u64);
+        x << 42 | y << 21 | z
+    };
+    let mut places: Vec<u64> = bounds.par_iter().with_min_len(1 << 12).map(place).collect();
+    places.par_sort_unstable();
+    places.chunk_by(|a, b| a == b).map(<[u64]>::len).max().unwrap_or(0)
+}
+
+/// Nodes, and the boxes in the order they are kept in.
+fn built(bounds: &[Bounds]) -> (Vec<Node>, Vec<u32>) {
+    let params =
+        if bounds.len() > 200_000 { BvhBuildParams::fast_build() } else { BvhBuildParams::medium_build() };
+    let tree = build_bvh2(bounds, params, &mut Duration::default());
+    let node = |n: &obvhs::bvh2::node::Bvh2Node| Node {
+        min: n.aabb().min.to_array(),
+        first: n.first_index,
+        max: n.aabb().max.to_array(),
+        count: n.prim_count,
+    };
+    (tree.nodes.iter().map(node).collect(), tree.primitive_indices)
+}
+
+/// The same, for any boxes: halves by number, along the longest side of where their middles are, so that it is never deep.
+fn halved(bounds: &[Bounds]) -> (Vec<Node>, Vec<u32>) {
+    const LEAVES: usize = 4;
+    let mut order: Vec<u32> = (0..bounds.len() as u32).collect();
+    let hole = Node { min: [0.0; 3], first: 0, max: [0.0; 3], count: 0 };
+    let mut nodes = vec![hole];
+    let mut stack = vec![(0, 0..bounds.len())];
+    while let Some((index, range)) = stack.pop() {
+        let of = |i: &u32| bounds[*i as usize].0;
+        let nowhere = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+        let around = |(low, high): (Vec3A, Vec3A), min: Vec3A, max: Vec3A| (low.min(min), high.max(max));
+        let part = &mut order[range.clone()];
+        let (min, max) = part.iter().map(of).fold(nowhere, |all, b| around(all, b.min, b.max));
+        let (min, max) = (min.to_array(), max.to_array());
+        if part.len() <= LEAVES {
+            nodes[index] = Node { min, first: range.start as u32, max, count: part.len() as u32 };
+            continue;
+        }
+        let middle = |i: &u32| of(i).min + of(i).max;
+        let (low, high) = part.iter().map(middle).fold(nowhere, |all, m| around(all, m, m));
+        let sides = (high - low).to_array();
+        let longest = (0..3).fold(0, |a, b| if sides[b] > sides[a] { b } else { a });
+        let half = part.len() / 2;
+        part.select_nth_unstable_by(half, |a, b| middle(a)[longest].total_cmp(&middle(b)[longest]));
+        let first = nodes.len();
+        nodes[index] = Node { min, first: first as u32, max, count: 0 };
+        nodes.extend([hole; 2]);
+        let half = range.start + half;
+        stack.extend([(first, range.start..half), (first + 1, half..range.end)]);
+    }
+    (nodes, order)
+}
+
+impl Leaf {
+    #[inline(always)]
+    fn new(mesh: &Mesh, face: u32) -> Self {
+        let (corners, one_sided) = (mesh.corners(face as usize), mesh.is_one_sided(face as usize));
+        Self { corners, face, one_sided }
     }
 }
 
@@ -123,12 +205,15 @@ impl Tree {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::shapes;
+    use crate::scene::{Paint, shapes};
 
     /// Every triangle is in a leaf, and in all boxes around it.
     #[test]
     fn boxes_hold_what_is_in_them() {
-        for mesh in [shapes::cube(), shapes::gate(), shapes::sphere(4)] {
+        // Hundreds of triangles in each place.
+        let triangles = shapes::cube().triangles.iter().flat_map(|t| [*t; 300]).collect();
+        let crowded = Mesh { triangles, paint: Paint::Uniform([1.0; 3]), ..shapes::cube() };
+        for mesh in [shapes::cube(), shapes::gate(), shapes::sphere(4), crowded] {
             for factor in [1.0, 1e-40, 1e40] {
                 let mesh = mesh.clone().placed(&glam::DAffine3::from_scale(DVec3::splat(factor)));
                 let tree = Tree::new(&mesh);

@@ -16,7 +16,7 @@ use proptest::prelude::*;
 use std::path::Path;
 use terrell::color::Coloring;
 use terrell::geodesic::{Celerity, Event, Tetrad};
-use terrell::plan::cheapest;
+use terrell::plan::Method;
 use terrell::relativity::{ApparentMap, Motion};
 use terrell::render::{Options, render};
 use terrell::scene::{
@@ -179,16 +179,13 @@ fn draw(scene: &Scene) {
     let _ = scene.check_animations();
     let Ok(mut camera) = scene.camera() else { return };
     camera.lens = Lens::new(Projection::Pinhole, 60.0, 32, 24).unwrap();
-    let options = Options {
-        tolerance: 1.0,
-        most_pieces: 10_000,
-        coloring: Coloring::Flat,
-        method: cheapest(scene, Coloring::Doppler).0,
-        ..Default::default()
-    };
-    if let Ok((film, _)) = render(scene, &camera, &options, |_| ()) {
-        assert!(film.distance.iter().chain(&film.doppler).all(|v| *v >= 0.0));
-        assert!(film.color.iter().flatten().all(|v| v.is_finite()));
+    for method in [Method::Exact, Method::Apparent, Method::Trace] {
+        let (tolerance, most_pieces, coloring) = (1.0, 10_000, Coloring::Flat);
+        let options = Options { tolerance, most_pieces, coloring, method, ..Default::default() };
+        if let Ok((film, _)) = render(scene, &camera, &options, |_| ()) {
+            assert!(film.distance.iter().chain(&film.doppler).all(|v| *v >= 0.0));
+            assert!(film.color.iter().flatten().all(|v| v.is_finite()));
+        }
     }
 }
 

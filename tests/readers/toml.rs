@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use std::path::Path;
 use terrell::geodesic::Celerity;
+use terrell::plan::Method;
 use terrell::render::{Options, render};
 use terrell::scene::{Speed, builtin_mesh, builtin_meshes, builtin_scenes, parse_scene};
 
@@ -276,7 +277,7 @@ fn more_triangles_than_pieces() {
         "[[body]]\nmesh = \"globe\"\nposition = [0, 9, 0]\n[[body]]\nmesh = \"cube\"\nposition = [0, 9, 3]\n";
     let render = |text: &str| {
         let scene = parse_scene(text, Path::new("a.toml")).unwrap();
-        let options = Options { most_pieces: 1000, ..Options::default() };
+        let options = Options { method: Method::Apparent, most_pieces: 1000, ..Options::default() };
         render(&scene, &scene.camera().unwrap(), &options, |_| ()).map(|(_, report)| report.pieces)
     };
     assert!(render(text).unwrap() > 1000);

@@ -27,6 +27,11 @@ pub const WAYS: &[Way] = &[
         set: |o| Options { method: Method::Trace, doppler_at: DopplerAt::Pixel, ..o },
     },
     Way {
+        name: "exact",
+        about: "exact shading",
+        set: |o| Options { method: Method::Exact, doppler_at: DopplerAt::Pixel, ..o },
+    },
+    Way {
         name: "apparent",
         about: "apparent shading, z-buffer",
         set: |o| Options { method: Method::Apparent, raster: Raster::Cpu, ..o },

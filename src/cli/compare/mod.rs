@@ -18,11 +18,10 @@ use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::measure::{Comparison, Faces, Known, Perceived, Reference, flip};
 use terrell::picture::{self, Pending};
-use terrell::plan::{Method, cheapest};
+use terrell::plan::is_of_polygons;
 use terrell::render::Options;
 use terrell::scene::{Camera, Scene, builtin_scenes};
 use terrell::tone::Development;
@@ -61,7 +60,7 @@ pub struct Compare {
     /// Compare with this EXR instead (R, G, B; if there: body, face, distance, doppler, inner); its size is taken
     #[arg(long, value_name = "FILE")]
     reference: Option<PathBuf>,
-    /// Which methods: trace, apparent, painter [default: all]
+    /// Which methods: trace, exact, apparent, painter [default: all]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = Way::named)]
     methods: Vec<&'static Way>,
     /// Times are medians of so many runs
@@ -195,9 +194,7 @@ impl Compare {
 
     /// The scenes, with what the flags say over what they say themselves.
     fn open(&self, reference: Option<&Reference>) -> Result<Vec<Scene>, Fault> {
-        let shipped = builtin_scenes()
-            .iter()
-            .filter(|scene| self.all && cheapest(&scene.scene(), Coloring::Spectral).0 == Method::Apparent);
+        let shipped = builtin_scenes().iter().filter(|scene| self.all && is_of_polygons(&scene.scene()));
         let names = self.scenes.iter().map(String::as_str).chain(shipped.map(|scene| scene.name));
         let names: Vec<&str> = names.collect();
         if reference.is_some() && names.len() != 1 {

@@ -1,0 +1,287 @@
+use super::stage::Target;
+use super::tile::SIDE;
+use crate::raster::{Bounder, Rect, SLACK_PX};
+use crate::relativity::{Points, PointsMut};
+use crate::scene::Lens;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+/// Which triangles of one body each tile looks at: those that may be seen in it.
+///
+/// Where they may be seen needs no cutting. Between its corners, a triangle is seen beside the flat one between their
+/// apparent places: along the motion, by γβ(linear r′ − r′), which is at most γβ L²/6r for a longest side L that is no nearer
+/// than r, since r′ is convex and bends by 1/r at most. So it is seen within what the flat one sweeps when moved that far, and
+/// all that is needed are bounds of six points.
+pub(super) struct Lists {
+    /// Tiles of a row.
+    pub columns: usize,
+    samples: [[f64; 2]; 2],
+    /// Where the numbers of each tile begin; one more at the end.
+    first: Vec<u32>,
+    /// Of leaves of the target's tree.
+    numbers: Vec<u32>,
+    large: Vec<Large>,
+}
+
+/// A triangle that may be seen in many tiles.
+struct Large {
+    number: u32,
+    tiles: Rect,
+    /// On a pinhole's picture, points it lies within the convex hull of.
+    hull: Option<[DVec2; 6]>,
+}
+
+/// A triangle in more tiles is kept once, not in every one: memory is bounded by the mesh.
+const MANY: u32 = 16;
+
+/// Triangles sorted as one task.
+const TASK: usize = 1 << 13;
+
+/// What a task has found: tiles and numbers.
+#[derive(Default)]
+struct Found {
+    small: Vec<(u32, u32)>,
+    large: Vec<Large>,
+}
+
+impl Lists {
+    pub fn new(target: &Target, lens: &Lens, samples: [[f64; 2]; 2]) -> Self {
+        let columns = lens.width().div_ceil(SIDE);
+        let tiles = columns * lens.height().div_ceil(SIDE);
+        let bounds = Bounds::new(target, lens, samples);
+        let count = target.tree.count();
+        let found: Vec<Found> = (0..count.div_ceil(TASK))
+            .into_par_iter()
+            .map(|task| {
+                let mut found = Found::default();
+                for number in (task * TASK..count.min((task + 1) * TASK)).map(|n| n as u32) {
+                    let Some(points) = bounds.hull(number) else { continue };
+                    for Rect { x, y } in bounds.bounder.of_hull(&points).into_iter().flatten() {
+                        let [x, y] = [x, y].map(|[from, to]| [from / SIDE, to.div_ceil(SIDE)]);
+                        if (x[1] - x[0]) * (y[1] - y[0]) > MANY {
+                            let hull = bounds.bounder.projected(&points);
+                            found.large.push(Large { number, tiles: Rect { x, y }, hull });
+                            continue;
+                        }
+                        for row in y[0]..y[1] {
+                            found.small.extend((x[0]..x[1]).map(|column| (row * columns + column, number)));
+                        }
+                    }
+                }
+                found
+            })
+            .collect();
+        // Counted, then put in their places.
+        let mut first = vec![0u32; tiles as usize + 1];
+        for (tile, _) in found.iter().flat_map(|f| &f.small) {
+            first[*tile as usize + 1] += 1;
+        }
+        for tile in 0..tiles as usize {
+            first[tile + 1] += first[tile];
+        }
+        let mut next = first.clone();
+        let mut numbers = vec![0; first[tiles as usize] as usize];
+        for (tile, number) in found.iter().flat_map(|f| &f.small) {
+            let at = &mut next[*tile as usize];
+            numbers[*at as usize] = *number;
+            *at += 1;
+        }
+        let large = found.into_iter().flat_map(|f| f.large).collect();
+        Self { columns: columns as usize, samples, first, numbers, large }
+    }
+
+    /// Those of many tiles that may be seen in a row of tiles, with the columns.
+    pub fn large_of_row(&self, row: u32) -> impl Iterator<Item = ([u32; 2], u32)> {
+        let of_row = move |large: &&Large| large.tiles.y[0] <= row && row < large.tiles.y[1];
+        self.large.iter().filter(of_row).filter_map(move |large| {
+            let [from, to] = large.tiles.x;
+            let Some(hull) = &large.hull else { return Some(([from, to], large.number)) };
+            let [low, high] = self.samples;
+            let top = f64::from(row * SIDE);
+            let [least, greatest] =
+                within(hull, [top + low[1] - SLACK_PX, top + f64::from(SIDE - 1) + high[1] + SLACK_PX])?;
+            // Casts end at 0 and at the greatest number.
+            let column = |x: f64| (x / f64::from(SIDE)) as u32;
+            let from = from.max(column(least - high[0] - SLACK_PX));
+            let to = to.min(column(greatest - low[0] + SLACK_PX).saturating_add(1));
+            (from < to).then_some(([from, to], large.number))
+        })
+    }
+
+    /// The others that may be seen in a tile.
+    pub fn of_tile(&self, row: u32, column: u32) -> &[u32] {
+        let tile = row as usize * self.columns + column as usize;
+        &self.numbers[self.first[tile] as usize..self.first[tile + 1] as usize]
+    }
+}
+
+/// The range of x of a convex hull's part between two y; none if there is none.
+fn within(points: &[DVec2; 6], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut add = |x: f64| range = [range[0].min(x), range[1].max(x)];
+    for (i, a) in points.iter().enumerate() {
+        if low <= a.y && a.y <= high {
+            add(a.x);
+        }
+        for b in &points[i + 1..] {
+            for y in [low, high] {
+                if (a.y < y) != (b.y < y) {
+                    add(a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)));
+                }
+            }
+        }
+    }
+    (range[0] <= range[1]).then_some(range)
+}
+
+/// Where vertices of a target are seen, observer's axes.
+fn seen(target: &Target) -> [Vec<f64>; 3] {
+    let mesh = &target.mesh;
+    let count = mesh.vertex_count();
+    let [mut x, mut y, mut z, mut distance, mut doppler] = [(); 5].map(|()| vec![0.0; count]);
+    // So many at a time.
+    const PART: usize = 1 << 12;
+    let rest = mesh.x.par_chunks(PART).zip(mesh.y.par_chunks(PART)).zip(mesh.z.par_chunks(PART));
+    let places = x.par_chunks_mut(PART).zip(y.par_chunks_mut(PART)).zip(z.par_chunks_mut(PART));
+    let others = distance.par_chunks_mut(PART).zip(doppler.par_chunks_mut(PART));
+    rest.zip(places).zip(others).for_each(|((((rx, ry), rz), ((x, y), z)), (distance, doppler))| {
+        let from = Points { x: rx, y: ry, z: rz };
+        target.map.see_all(from, PointsMut { x, y, z, distance, doppler });
+    });
+    [x, y, z]
+}
+
+/// Finds where triangles may be seen.
+struct Bounds<'a> {
+    bounder: Bounder<'a>,
+    seen: [Vec<f64>; 3],
+    /// Of the motion, observer's axes, towards where triangles are seen beside flat ones.
+    axis: DVec3,
+    target: &'a Target,
+}
+
+impl<'a> Bounds<'a> {
+    fn new(target: &'a Target, lens: &'a Lens, samples: [[f64; 2]; 2]) -> Self {
+        let (bounder, seen) = (Bounder::new(lens, samples), seen(target));
+        Self { bounder, seen, axis: target.map.axis_observer(), target }
+    }
+
+    /// Points, observer's axes, in whose convex hull a triangle is seen; none for one that is not seen at all.
+    #[inline]
+    fn hull(&self, number: u32) -> Option<[DVec3; 6]> {
+        let Target { mesh, map, tree, .. } = self.target;
+        let leaf = tree.leaf(number);
+        let [a, b, c] = leaf.corners.map(|corner| map.offset_rest(corner));
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.cross(ac);
+        let height = normal.dot(a);
+        if normal == DVec3::ZERO || (leaf.one_sided && height >= 0.0) {
+            return None;
+        }
+        let nearest = a.length_squared().min(b.length_squared()).min(c.length_squared()).sqrt();
+        let side = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared()).sqrt();
+        let mut nearest = nearest - side;
+        if nearest < side {
+            // The plane's distance says more.
+            nearest = nearest.max((height / normal.length()).abs());
+        }
+        let beside = map.speed() * (side * side) / (6.0 * nearest);
+        let place = |v: u32| DVec3::from_array([0, 1, 2].map(|k| self.seen[k][v as usize]));
+        let [a, b, c] = mesh.triangles[leaf.face as usize].map(place);
+        let along = self.axis * (beside * (1.0 + 1e-9));
+        Some([a, b, c, a + along, b + along, c + along])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::relativity::{ApparentMap, Motion};
+    use crate::scene::{Mesh, Projection};
+    use crate::trace::beam::tests::random;
+    use crate::trace::tree::Tree;
+    use crate::trace::{Stage, beam};
+    use std::sync::Arc;
+    use terrell_geodesic::{Celerity, Event, Tetrad};
+
+    /// Every point of a triangle is seen between the flat one and that moved along the motion, near and far, at any speed,
+    /// and in a tile that lists it.
+    #[test]
+    fn triangles_are_seen_where_lists_say() {
+        let mut random = random(11);
+        let mut number = move |reach: f64| (random() - 0.5) * reach;
+        let observer = Tetrad::new(
+            Event::origin(),
+            Celerity::new(DVec3::new(0.2, -0.4, 0.1)).unwrap(),
+            DVec3::new(0.3, 1.0, 0.2),
+            DVec3::Z,
+        )
+        .unwrap();
+        let (mut listed, mut large) = (0, 0);
+        for round in 0..300 {
+            let speed = [0.0, 0.5, 3.0, 100.0, 1e6][round % 5];
+            let projection = [Projection::Pinhole, Projection::Fisheye, Projection::Panorama][round % 3];
+            let fov = [120.0, 360.0, 360.0][round % 3];
+            let lens = Lens::new(projection, fov, 161, 97).unwrap();
+            let camera = crate::scene::Camera { observer, lens };
+            let mut point = |reach: f64| DVec3::new(number(reach), number(reach), number(reach));
+            let celerity = Celerity::new(point(1.0).normalize() * speed).unwrap();
+            let motion = Motion { celerity, origin: Event::new(0.0, 0.1, 0.2, -0.3) };
+            let map = ApparentMap::new(&motion, &observer);
+            let middle = map.observer_rest() + point([1.0, 8.0][round % 2]);
+            let side = [0.02, 1.0, 20.0][round % 3];
+            let corners = [middle + point(side), middle + point(side), middle + point(side)];
+            let mesh = Arc::new(Mesh::new(&corners, vec![[0, 1, 2]]));
+            let tree = Arc::new(Tree::flat(&mesh));
+            let stage = Stage::new(vec![(0, motion, mesh, tree)], &camera, false);
+            let target = &stage.targets[0];
+            let bounds = Bounds::new(target, &lens, [[0.5; 2]; 2]);
+            let lists = Lists::new(target, &lens, [[0.5; 2]; 2]);
+            let hull = bounds.hull(0).unwrap();
+            let most = hull[3] - hull[0];
+            for step in 0..200 {
+                let (u, v) = (f64::from(step % 14) / 14.0, f64::from(step / 14) / 15.0);
+                let weights = if u + v > 1.0 { [1.0 - u, 1.0 - v, u + v - 1.0] } else { [u, v, 1.0 - u - v] };
+                let mix = |p: [DVec3; 3]| (0..3).map(|i| weights[i] * p[i]).sum::<DVec3>();
+                let (flat, seen) = (mix([hull[0], hull[1], hull[2]]), map.see(mix(corners)).position);
+                let beside = seen - flat;
+                let along = beside.dot(bounds.axis);
+                // What f64 leaves of the differences, at γ times the size.
+                let rounding = 1e-12 * (1.0 + map.gamma()) * (seen.length() + flat.length() + side);
+                assert!((beside - along * bounds.axis).length() < rounding, "{round}");
+                assert!(-rounding < along && along < most.length() + rounding, "{round} {along} {most}");
+                let Some(pixel) = lens.pixel(seen) else { continue };
+                // The middle of the pixel is seen through, if it is within the triangle.
+                let (x, y) = (pixel.x.floor(), pixel.y.floor());
+                if !(0.0..161.0).contains(&x) || !(0.0..97.0).contains(&y) {
+                    continue;
+                }
+                let Some(sight) = lens.direction(DVec2::new(x + 0.5, y + 0.5)) else { continue };
+                let mut rays = beam::Directed::default();
+                rays.push(target.rest_direction(sight, sight.length()), 0.0);
+                let origin = crate::trace::origin::Origin::of_observer(&target.map);
+                let mut beam = beam::Beam::default();
+                beam.try_leaves(rays.facing().unwrap(), &rays, &target.tree, &[0], &origin, false);
+                if beam.found(0) == beam::NONE {
+                    continue;
+                }
+                let (column, row) = (x as u32 / SIDE, y as u32 / SIDE);
+                let small = lists.of_tile(row, column).contains(&0);
+                let wide = lists.large_of_row(row).any(|([from, to], _)| from <= column && column < to);
+                assert!(small || wide, "{round} {pixel}");
+                listed += 1;
+                large += usize::from(wide);
+            }
+        }
+        assert!(listed > 3000 && large > 1000 && listed - large > 500, "{listed} {large}");
+    }
+
+    #[test]
+    fn hulls_are_cut_to_rows() {
+        let at = |x: f64, y: f64| DVec2::new(x, y);
+        let points = [at(0.0, 0.0), at(10.0, 10.0), at(0.0, 0.0), at(3.0, 9.0), at(10.0, 10.0), at(5.0, 5.0)];
+        assert_eq!(within(&points, [2.0, 4.0]).unwrap().map(|x| (x * 3.0).round()), [2.0, 12.0]);
+        assert_eq!(within(&points, [9.5, 20.0]).unwrap()[1], 10.0);
+        assert_eq!(within(&points, [11.0, 12.0]), None);
+    }
+}

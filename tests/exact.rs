@@ -1,0 +1,126 @@
+//! Exact shading sees just what rays see: every pixel, to the bit.
+
+use glam::DVec3;
+use terrell::color::Coloring;
+use terrell::film::{Film, Samples};
+use terrell::geodesic::{Celerity, Event};
+use terrell::plan::{Method, cheapest, is_of_polygons};
+use terrell::relativity::Motion;
+use terrell::render::Options;
+use terrell::scene::{Aim, Body, Mesh, Projection, Scene, Speed, View, builtin_scene, builtin_scenes};
+use terrell::trace::{Look, Paths, Tracer};
+
+fn shipped(name: &str) -> Scene {
+    builtin_scene(name).unwrap().scene()
+}
+
+/// By lists, and by rays: the pixels that differ in anything, and those that show something.
+fn differ(scene: &Scene, samples: u32) -> [usize; 2] {
+    let camera = scene.camera().unwrap();
+    let options = Options { coloring: Coloring::Geometry, ..Options::default() };
+    let prepared = options.prepare(scene, [&camera]).unwrap();
+    let (samples, shading) = (Samples::new(samples), prepared.shading.seen_by(&camera.observer));
+    let look = Look { samples: samples.offsets(), shading: &shading, paths: Paths::default() };
+    let [exact, traced] = [Tracer::listing, Tracer::new].map(|make| {
+        let mut film = Film::new(0, 0);
+        make(scene).trace(scene, &camera, &look, &mut film, |_, _| ());
+        film
+    });
+    let same = |i: usize| {
+        let of = |film: &Film| (film.body[i], film.face[i], film.distance[i], film.doppler[i], film.color[i]);
+        of(&exact) == of(&traced)
+    };
+    [(0..traced.body.len()).filter(|i| !same(*i)).count(), traced.covered()]
+}
+
+/// All that ships, with every lens, from rest to 0.9999c, shadows and a sky included.
+#[test]
+fn scenes_that_ship() {
+    let mut pixels = 0;
+    for (builtin, projection) in builtin_scenes()
+        .iter()
+        .flat_map(|s| [Projection::Pinhole, Projection::Fisheye, Projection::Panorama].map(|p| (s, p)))
+    {
+        let mut scene = builtin.scene();
+        if scene.spacetime.is_curved() {
+            continue;
+        }
+        scene.view.size = [161, 91];
+        scene.view.projection = projection;
+        scene.view.fov_deg = (projection == Projection::Pinhole).then_some(70.0);
+        for beta in [0.0f64, 0.5, 0.9, 0.9999] {
+            let mut scene = scene.clone();
+            // Moved for the look of it: where nothing passes, there is nothing to be abreast of.
+            let speed = beta.max(1e-6);
+            scene.set_speed(Speed::Along(speed / (1.0 - speed * speed).sqrt())).unwrap();
+            if scene.camera().is_err() {
+                continue;
+            }
+            let [different, shown] = differ(&scene, 1);
+            assert_eq!(different, 0, "{} {projection} {beta}", builtin.name);
+            pixels += shown;
+        }
+    }
+    assert!(pixels > 400_000, "{pixels}");
+}
+
+/// Samples beside the middle are seen by the same lists.
+#[test]
+fn many_samples() {
+    let mut scene = shipped("street");
+    scene.view.size = [120, 70];
+    let [different, shown] = differ(&scene, 9);
+    assert!(different == 0 && shown > 1000);
+}
+
+/// A wrinkled ball of 320 000 triangles, of the size people have, from outside and from within.
+#[test]
+fn a_large_mesh() {
+    let n = 400u32;
+    let mut vertices = Vec::new();
+    for i in 0..=n {
+        for j in 0..n {
+            let (theta, phi) = (
+                f64::from(i) * std::f64::consts::PI / f64::from(n),
+                f64::from(j) * std::f64::consts::TAU / f64::from(n),
+            );
+            let out = 1.0 + 0.05 * (9.0 * theta).sin() * (11.0 * phi).cos();
+            vertices.push(out * DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()));
+        }
+    }
+    let at = |i: u32, j: u32| i * n + j % n;
+    let square = |i: u32, j: u32| {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    let triangles = (0..n).flat_map(|i| (0..n).flat_map(move |j| square(i, j))).collect();
+    let mesh = Mesh::new(&vertices, triangles);
+    for (place, projection) in [(DVec3::Y * 3.0, Projection::Pinhole), (DVec3::ZERO, Projection::Panorama)] {
+        let celerity = Celerity::from_beta(DVec3::new(0.9, 0.0, 0.2)).unwrap();
+        let motion = Motion { celerity, origin: Event::at(-1.0, place) };
+        let view = View { aim: Aim::Forward(DVec3::Y), projection, size: [320, 180], ..View::default() };
+        let scene = Scene::new("ball", vec![Body::new("ball", mesh.clone(), motion)], view);
+        let [different, shown] = differ(&scene, 1);
+        assert!(different == 0 && shown > 5000, "{different} {shown}");
+    }
+}
+
+/// Scene → plan: no more than it needs.
+#[test]
+fn plans() {
+    let of = |name: &str, coloring| cheapest(&shipped(name), coloring);
+    for (name, coloring, method, why) in [
+        ("cube", Coloring::Spectral, Method::Exact, "nothing casts shadows"),
+        ("street", Coloring::Flat, Method::Exact, "nothing casts shadows"),
+        ("shadow", Coloring::Spectral, Method::Exact, "shadows need rays from what is seen only"),
+        ("sunlit", Coloring::Spectral, Method::Exact, "shadows need rays from what is seen only"),
+        ("shadow", Coloring::Doppler, Method::Exact, "the Doppler factor needs no light"),
+        ("box", Coloring::Spectral, Method::Trace, "surfaces light each other"),
+        ("box", Coloring::Doppler, Method::Exact, "the Doppler factor needs no light"),
+        ("blackhole", Coloring::Spectral, Method::Trace, "spacetime is curved"),
+        ("blackhole", Coloring::Doppler, Method::Trace, "spacetime is curved"),
+    ] {
+        assert_eq!(of(name, coloring), (method, why), "{name} {coloring}");
+    }
+    assert!(!is_of_polygons(&shipped("shadow")) && is_of_polygons(&shipped("gate")));
+}
