@@ -1,8 +1,9 @@
 //! See relativistic motion: any mesh as it *looks* at any speed.
 //!
 //! The light that arrives at one moment left a moving body at different times, so the body looks sheared,
-//! stretched and turned. This crate moves each vertex to where it is seen, cuts straight edges so that they
-//! become the hyperbolas they look like, to a stated pixel error, and draws the result.
+//! stretched and turned. This crate finds what each pixel sees by testing triangles, uncut, in the sky of their rest
+//! frame; or it moves each vertex to where it is seen, cuts straight edges so that they become the hyperbolas they look like,
+//! to a stated pixel error, and draws the result, or hands it to other programs.
 //!
 //! ```
 //! use terrell::{render, scene, tone};
@@ -31,6 +32,7 @@
 //! | Eq. 5 | [`spectrum::Response`], [`light::Shading`] | I_ν/ν³ is invariant: spectra and colours under a shift |
 //! | section 2.2.3 | [`light::SeenShading::radiance`] | lights, aberrated, in each body's rest frame |
 //! | section 2.2.4 | [`trace::Tracer`] | shadows and reflections by rays, with light travel time |
+//! | beyond it | [`trace::Tracer::exact`] | triangles tested pixel by pixel, nothing cut |
 //! | Fig. 7 | [`geodesic::Spacetime`] | what hands straight segments to whoever looks |
 //!
 //! # Conventions

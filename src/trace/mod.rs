@@ -9,6 +9,8 @@
 //! [`Tracer::trace_curved`].
 //!
 //! It finds the point of the surface otherwise than [`raster`](crate::raster) does, and knows shadows; all else is the same.
+//!
+//! [`Tracer::exact`] does so without following lines of sight through a hierarchy: exact shading.
 
 mod beam;
 mod bundle;
