@@ -21,7 +21,7 @@ pub struct Options {
     /// Largest distance in pixels between a drawn edge and its exact image; usually ¼. Time and memory grow
     /// as 1/tolerance for large faces.
     pub tolerance: f64,
-    /// The most triangles all bodies together may be cut into.
+    /// The most triangles all bodies together may be cut into, where they are.
     pub most_pieces: usize,
     /// Samples a pixel.
     pub samples: u32,
@@ -29,7 +29,7 @@ pub struct Options {
     pub coloring: Coloring,
     /// Where the Doppler factor is worked out.
     pub doppler_at: DopplerAt,
-    /// What decides which triangle a pixel sees, where nothing is traced.
+    /// What decides which triangle a pixel sees in apparent shading.
     pub raster: Raster,
     /// How light of surfaces on each other is followed, where rays are traced.
     pub paths: Paths,

@@ -262,7 +262,11 @@ fn what_needs_ray_tracing_is_traced() {
     for flags in [["--method", "apparent"], ["--raster", "skia"], ["--doppler", "vertex"]] {
         let told = lit(&flags);
         assert!(told.contains("apparent shading"), "{told}");
-        assert_eq!(told.lines().filter(|l| l.contains("--method trace")).count(), 1, "{told}");
+        assert_eq!(
+            told.lines().filter(|l| l.contains("--method exact has what is missing")).count(),
+            1,
+            "{told}"
+        );
     }
     assert!(lit(&["--color", "doppler"]).contains("exact shading"));
     assert!(lit(&["--bounces", "2", "--samples", "4"]).contains("of paths of 2 reflections, noise"));

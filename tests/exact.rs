@@ -122,5 +122,13 @@ fn plans() {
     ] {
         assert_eq!(of(name, coloring), (method, why), "{name} {coloring}");
     }
+    // Beyond what lines of sight have digits for.
+    for (name, gamma, expected) in
+        [("cube", 9e4, Method::Exact), ("cube", 2e5, Method::Apparent), ("shadow", 2e5, Method::Exact)]
+    {
+        let mut scene = shipped(name);
+        scene.set_speed(Speed::Along(gamma)).unwrap();
+        assert_eq!(cheapest(&scene, Coloring::Spectral).0, expected, "{name} {gamma}");
+    }
     assert!(!is_of_polygons(&shipped("shadow")) && is_of_polygons(&shipped("gate")));
 }

@@ -85,7 +85,7 @@ pub struct LookFlags {
     /// How what a pixel sees is found
     #[arg(long, value_enum, default_value = "auto")]
     method: MethodFlag,
-    /// What decides which triangle a pixel sees, where nothing is traced
+    /// What decides which triangle a pixel sees, where triangles are cut (--method apparent)
     #[arg(long, value_enum, default_value = "cpu")]
     raster: RasterFlag,
 }
@@ -169,7 +169,7 @@ impl DevelopFlags {
 enum MethodFlag {
     /// The cheapest that is right for the scene
     Auto,
-    /// Every triangle tested where it may be seen, exactly: with shadows, in flat spacetime
+    /// Every triangle tested where it may be seen, exactly: with shadows, before the sky, in flat spacetime
     Exact,
     /// Polygons, moved to where they are seen, to a tolerance: without shadows, in flat spacetime
     Apparent,
@@ -282,10 +282,10 @@ impl LookFlags {
         match method {
             Method::Trace => self.set_paths(options, scene),
             Method::Exact | Method::Apparent if self.bounces.is_some_and(|n| n > 0) => {
-                return Err(format!(
-                    "--bounces is about rays; with --method {method} surfaces do not light each other"
-                )
-                .into());
+                let flag = of_polygons.map_or_else(|| format!("--method {method}"), str::to_owned);
+                return Err(
+                    format!("--bounces is about rays; with {flag} surfaces do not light each other").into()
+                );
             }
             Method::Exact | Method::Apparent => {}
         }

@@ -158,7 +158,7 @@ pub fn dark_lights(traced: &Traced, scene: &Scene, observer: &Tetrad) -> Vec<Str
         let rays = count_in_words(*asked);
         let why = match scene.body_around(light, observer) {
             Some(body) => format!("it is inside '{}'; {rays} rays to it are blocked", body.name),
-            None if *asked == 0 => "it shines from behind".to_owned(),
+            None if *asked == 0 => "it shines from behind, or elsewhere".to_owned(),
             None => format!("all {rays} rays to it are blocked"),
         };
         format!("the light '{}' reaches nothing of what is seen: {why}", light.name)
@@ -205,7 +205,8 @@ pub fn light_notes(scene: &Scene, options: &Options) -> Vec<String> {
     }
     let sky = scene.sky.is_some().then(|| "the sky is not there".to_owned());
     let notes = shadow_note(scene, options.coloring).into_iter().chain(sky);
-    notes.map(|note| format!("{note}; --method trace draws it")).collect()
+    let method = if has_reflections(scene) { Method::Trace } else { Method::Exact };
+    notes.map(|note| format!("{note}; --method {method} has what is missing")).collect()
 }
 
 /// As [`light_notes`], where nothing can be traced.

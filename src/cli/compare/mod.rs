@@ -18,10 +18,11 @@ use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::measure::{Comparison, Faces, Known, Perceived, Reference, flip};
 use terrell::picture::{self, Pending};
-use terrell::plan::is_of_polygons;
+use terrell::plan::{has_reflections, is_of_polygons};
 use terrell::render::Options;
 use terrell::scene::{Camera, Scene, builtin_scenes};
 use terrell::tone::Development;
@@ -226,10 +227,11 @@ impl Compare {
         folder: impl FnOnce() -> Result<PathBuf, Fault>,
     ) -> Result<(Compared, Vec<Pending>), Fault> {
         let coloring = options.coloring;
+        let reflects = coloring != Coloring::Doppler && has_reflections(scene);
+        let only = if reflects { "trace" } else { "trace and exact" };
         scene.notes.extend(
-            summary::shadow_note(scene, coloring).map(|note| {
-                format!("{note} but where rays are traced (trace): that is in the others' light")
-            }),
+            summary::shadow_note(scene, coloring)
+                .map(|note| format!("{note} but by {only}: that is in the others' light")),
         );
         let mut ways: Vec<&'static Way> = WAYS
             .iter()
