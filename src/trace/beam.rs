@@ -199,13 +199,14 @@ impl Beam {
         self.rays.found[ray].to_bits()
     }
 
-    /// Looks for the nearest triangle for each of some rays that face the same way; with AVX2 if `vectors` and there is
-    /// such.
+    /// Looks for the nearest triangle for each of some rays that face the same way: among these `leaves`, or, if it is not
+    /// known which may be met, through the tree. With AVX2 if `vectors` and there is such.
     pub fn trace(
         &mut self,
         way: (usize, bool),
         rays: &Directed,
         tree: &Tree,
+        leaves: Option<&[u32]>,
         origin: &Origin<'_>,
         vectors: bool,
     ) {
@@ -213,67 +214,32 @@ impl Beam {
         {
             if vectors && x86::has_avx2() {
                 // SAFETY: the processor has both.
-                unsafe { self.trace_avx2(way, rays, tree, origin) }
+                unsafe { self.trace_avx2(way, rays, tree, leaves, origin) }
             } else {
                 // SAFETY: every x86-64 processor has SSE2.
-                unsafe { self.trace_with::<x86::Sse2>(way, rays, tree, origin) }
+                unsafe { self.trace_with::<x86::Sse2>(way, rays, tree, leaves, origin) }
             }
         }
         #[cfg(not(target_arch = "x86_64"))]
         {
             let _ = vectors;
             // SAFETY: needs nothing.
-            unsafe { self.trace_with::<super::lanes::One>(way, rays, tree, origin) }
-        }
-    }
-
-    /// As [`trace`](Self::trace), where it is known which leaves may be met.
-    pub fn try_leaves(
-        &mut self,
-        way: (usize, bool),
-        rays: &Directed,
-        tree: &Tree,
-        leaves: &[u32],
-        origin: &Origin<'_>,
-        vectors: bool,
-    ) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if vectors && x86::has_avx2() {
-                // SAFETY: the processor has both.
-                unsafe { self.try_avx2(way, rays, tree, leaves, origin) }
-            } else {
-                // SAFETY: every x86-64 processor has SSE2.
-                unsafe { self.try_with::<x86::Sse2>(way, rays, tree, leaves, origin) }
-            }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        {
-            let _ = vectors;
-            // SAFETY: needs nothing.
-            unsafe { self.try_with::<super::lanes::One>(way, rays, tree, leaves, origin) }
+            unsafe { self.trace_with::<super::lanes::One>(way, rays, tree, leaves, origin) }
         }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn try_avx2(
+    fn trace_avx2(
         &mut self,
         way: (usize, bool),
         rays: &Directed,
         tree: &Tree,
-        leaves: &[u32],
+        leaves: Option<&[u32]>,
         origin: &Origin<'_>,
     ) {
         // SAFETY: the caller has made sure.
-        unsafe { self.try_with::<x86::Avx2>(way, rays, tree, leaves, origin) }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn trace_avx2(&mut self, way: (usize, bool), rays: &Directed, tree: &Tree, origin: &Origin<'_>) {
-        // SAFETY: the caller has made sure.
-        unsafe { self.trace_with::<x86::Avx2>(way, rays, tree, origin) }
+        unsafe { self.trace_with::<x86::Avx2>(way, rays, tree, leaves, origin) }
     }
 
     #[inline(always)]
@@ -282,11 +248,19 @@ impl Beam {
         way: (usize, bool),
         rays: &Directed,
         tree: &Tree,
+        leaves: Option<&[u32]>,
         origin: &Origin<'_>,
     ) {
         self.aim(way, rays, tree, origin);
         let (place, slack) = origin.place(tree);
         let unit = tree.scale * inverse_unit(place);
+        if let Some(leaves) = leaves {
+            for number in leaves {
+                // SAFETY: as this function.
+                unsafe { self.meet_leaf::<L>(tree, origin, unit, *number) };
+            }
+            return;
+        }
         let boxes = Boxes::new(self, place, slack);
         let mut farthest = self.farthest(place);
         let mut stack = std::mem::take(&mut self.stack);
@@ -329,24 +303,6 @@ impl Beam {
             }
         }
         self.stack = stack;
-    }
-
-    /// As [`trace_with`](Self::trace_with), of some leaves only.
-    #[inline(always)]
-    unsafe fn try_with<L: Lanes>(
-        &mut self,
-        way: (usize, bool),
-        rays: &Directed,
-        tree: &Tree,
-        leaves: &[u32],
-        origin: &Origin<'_>,
-    ) {
-        self.aim(way, rays, tree, origin);
-        let unit = tree.scale * inverse_unit(origin.place(tree).0);
-        for number in leaves {
-            // SAFETY: as this function.
-            unsafe { self.meet_leaf::<L>(tree, origin, unit, *number) };
-        }
     }
 
     /// Whether a leaf is nearer to any ray than what is known.
@@ -656,11 +612,11 @@ pub(super) mod tests {
                     for kind in 0..3 {
                         let way = facing(towards);
                         match kind {
-                            0 => beam.trace(way, &rays, &tree, &origin, true),
-                            1 => beam.trace(way, &rays, &tree, &origin, false),
+                            0 => beam.trace(way, &rays, &tree, None, &origin, true),
+                            1 => beam.trace(way, &rays, &tree, None, &origin, false),
                             // SAFETY: needs nothing.
                             _ => unsafe {
-                                beam.trace_with::<super::super::lanes::One>(way, &rays, &tree, &origin);
+                                beam.trace_with::<super::super::lanes::One>(way, &rays, &tree, None, &origin);
                             },
                         }
                         for (i, expected) in expected.iter().enumerate() {

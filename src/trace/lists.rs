@@ -261,7 +261,7 @@ mod tests {
                 rays.push(target.rest_direction(sight, sight.length()), 0.0);
                 let origin = crate::trace::origin::Origin::of_observer(&target.map);
                 let mut beam = beam::Beam::default();
-                beam.try_leaves(rays.facing().unwrap(), &rays, &target.tree, &[0], &origin, false);
+                beam.trace(rays.facing().unwrap(), &rays, &target.tree, Some(&[0]), &origin, false);
                 if beam.found(0) == beam::NONE {
                     continue;
                 }

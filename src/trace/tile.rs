@@ -273,13 +273,8 @@ impl Tile {
     fn follow(&mut self, job: &Job<'_>, index: usize, way: (usize, bool)) {
         let target = &job.stage.targets[index];
         let origin = Origin::of_observer(&target.map);
-        let tree = &target.tree;
-        match job.lists {
-            None => self.beam.trace(way, &self.rays, tree, &origin, job.vectors),
-            Some(_) => {
-                self.beam.try_leaves(way, &self.rays, tree, &self.candidates, &origin, job.vectors);
-            }
-        }
+        let leaves = job.lists.map(|_| &self.candidates[..]);
+        self.beam.trace(way, &self.rays, &target.tree, leaves, &origin, job.vectors);
         // The plane of the triangle met last: N, and its distance times |N|.
         let (mut last, mut normal, mut over) = (NONE, DVec3::ZERO, 0.0);
         for (number, sight) in self.numbers.iter().enumerate() {
