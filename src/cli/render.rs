@@ -72,6 +72,13 @@ impl Render {
             progress.show(&scene, step)
         })?;
         progress.clear();
+        let to_lights = report.rays.as_ref().map_or(&[][..], |rays| &rays.to_lights);
+        let dark = summary::dark_lights(to_lights, &scene, &camera.observer);
+        if let Some(light) = dark.iter().find(|light| light.shut_in) {
+            return Err(format!("{}; move it or take it away", light.told).into());
+        }
+        let is_dark_told = !dark.is_empty();
+        scene.notes.extend(dark.into_iter().map(|light| light.told));
         let exposure = self.look.develop.exposure(coloring, &scene);
         let tone = self.look.develop.tone(coloring);
         let development = exposure.of_picture(tone, &scene, &camera, &options, &film)?;
@@ -97,6 +104,7 @@ impl Render {
             why,
             development,
             report,
+            is_dark_told,
             output,
             times,
         };
@@ -172,6 +180,8 @@ struct Done<'a> {
     why: Option<&'static str>,
     development: Development,
     report: Report,
+    /// Whether the notes say of a light that it reaches nothing.
+    is_dark_told: bool,
     output: PathBuf,
     times: Times,
 }
@@ -198,23 +208,15 @@ impl Done<'_> {
             line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
         }
         let brightest = summary::brightest(self.film);
-        let dark: Vec<String> = self
-            .report
-            .rays
-            .iter()
-            .flat_map(|rays| summary::dark_lights(rays, self.scene, &self.camera.observer))
-            .collect();
         let is_hole = self.film.body.iter().all(|body| *body == HOLE);
         if (self.film.covered() > 0 || self.scene.sky.is_some())
-            && dark.is_empty()
+            && !self.is_dark_told
             && !is_hole
             && summary::is_dark(brightest, &self.development)
         {
             line.push_str(&format!("note: {}\n", summary::dark_note(self.options.coloring)));
         }
-        for note in
-            dark.into_iter().chain(self.report.rays.iter().flat_map(|rays| summary::ray_notes(&rays.count)))
-        {
+        for note in self.report.rays.iter().flat_map(|rays| summary::ray_notes(&rays.count)) {
             line.push_str(&format!("note: {note}\n"));
         }
         for note in &self.scene.notes {
@@ -224,7 +226,8 @@ impl Done<'_> {
     }
 
     fn summary(&self) -> serde_json::Value {
-        let Self { scene, camera, options, film, shading, why, development, report, output, times } = self;
+        let Self { scene, camera, options, film, shading, why, development, report, output, times, .. } =
+            self;
         let doppler = film.doppler.iter().zip(&film.body).filter(|(_, b)| **b >= 0).map(|(d, _)| [*d, *d]);
         json!({
             "terrell": env!("CARGO_PKG_VERSION"),

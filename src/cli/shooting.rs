@@ -59,6 +59,8 @@ pub struct Tally {
     pub flagged: usize,
     /// Of these, all rays.
     pub rays: Count,
+    /// Of the take that is shot, in its last panel: rays to each light, and those of them that are blocked.
+    to_lights: Vec<[u64; 2]>,
     pub mapping: Duration,
     pub shading: Duration,
     pub coloring: Duration,
@@ -172,6 +174,11 @@ impl Shooting<'_> {
                 self.bar.inc(1);
                 index += 1;
             }
+            let to_lights = std::mem::take(&mut self.tally.to_lights);
+            if let Some(Panel { scene, cameras, .. }) = take.panels.last() {
+                let dark = summary::dark_lights(&to_lights, scene, &cameras[0].observer);
+                self.notes.extend(dark.into_iter().map(|light| light.told));
+            }
         }
         if let Some(frame) = waiting {
             let start = Instant::now();
@@ -189,6 +196,12 @@ impl Shooting<'_> {
         for (panel, film) in take.panels.iter().zip(films) {
             let Panel { scene, cameras, overlay, prepared, development } = panel;
             let report = render_again(scene, &cameras[i], &take.options, prepared, film, |_| ())?;
+            if let Some(rays) = report.rays.as_ref().filter(|_| pictures.len() + 1 == take.panels.len()) {
+                self.tally.to_lights.resize(rays.to_lights.len(), [0; 2]);
+                for (all, of_frame) in self.tally.to_lights.iter_mut().zip(&rays.to_lights) {
+                    *all = [all[0] + of_frame[0], all[1] + of_frame[1]];
+                }
+            }
             if let Some(count) = report
                 .rays
                 .as_ref()

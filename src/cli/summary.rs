@@ -150,20 +150,35 @@ pub fn rays(traced: &Traced, scene: &Scene) -> Value {
     })
 }
 
-/// Lights of which nothing reaches what is seen, for people to read.
-pub fn dark_lights(traced: &Traced, scene: &Scene, observer: &Tetrad) -> Vec<String> {
+/// A light of which nothing reaches what is seen.
+pub struct DarkLight {
+    /// Whether a body lets nothing of it out, which is a mistake.
+    pub shut_in: bool,
+    /// For people to read.
+    pub told: String,
+}
+
+/// Lights of which nothing reaches what is seen, by how many rays to each there were and were blocked.
+pub fn dark_lights(to_lights: &[[u64; 2]], scene: &Scene, observer: &Tetrad) -> Vec<DarkLight> {
     let dark =
         |([asked, blocked], light): &(&[u64; 2], &Light)| asked == blocked && light.kind.casts_shadows();
-    let note = |([asked, _], light): (&[u64; 2], &Light)| {
+    let tell = |([asked, _], light): (&[u64; 2], &Light)| {
         let rays = count_in_words(*asked);
-        let why = match scene.body_around(light, observer) {
-            Some(body) => format!("it is inside '{}'; {rays} rays to it are blocked", body.name),
+        let around = scene.body_around(light, observer);
+        let why = match around {
+            Some(body) => {
+                format!(
+                    "it is inside '{}', which lets no light out; {rays} rays to it are blocked",
+                    body.name
+                )
+            }
             None if *asked == 0 => "it shines from behind, or elsewhere".to_owned(),
             None => format!("all {rays} rays to it are blocked"),
         };
-        format!("the light '{}' reaches nothing of what is seen: {why}", light.name)
+        let told = format!("the light '{}' reaches nothing of what is seen: {why}", light.name);
+        DarkLight { shut_in: around.is_some(), told }
     };
-    traced.to_lights.iter().zip(&scene.lights).filter(dark).map(note).collect()
+    to_lights.iter().zip(&scene.lights).filter(dark).map(tell).collect()
 }
 
 /// Rays that show nothing, for people to read.

@@ -117,7 +117,8 @@ impl Scene {
         Eye::new(&self.spacetime, &self.view, &camera.observer)
     }
 
-    /// The body that a light at a place is inside of, if any, when it is where an observer sees it.
+    /// The body that a light at a place is shut in by, if any, when it is where an observer sees it: one whose surface is
+    /// closed and turned the same way all around.
     pub fn body_around(&self, light: &Light, observer: &Tetrad) -> Option<&Body> {
         let (LightKind::Point { position } | LightKind::Spot { position, .. }) = light.kind else {
             return None;
@@ -129,7 +130,7 @@ impl Scene {
         self.bodies.iter().find(|body| {
             let between = light.motion.origin.since::<Wide>(body.motion.origin);
             let at = body.motion.world_from_rest::<Wide>().inverse() * (between + seen);
-            body.mesh.winding(at.rounded().xyz()).abs() > 0.5
+            body.mesh.winding(at.rounded().xyz()).abs() > 1.0 - 1e-6
         })
     }
 
