@@ -93,11 +93,11 @@ impl Development {
             if light == [0.0; 3] {
                 return light;
             }
-            let exposed = within_gamut(light.map(|v| v * factor));
+            let [r, g, b] = within_gamut([light[0] * factor, light[1] * factor, light[2] * factor]);
             match tone {
-                Tone::Linear => exposed,
-                Tone::Filmic => exposed.map(filmic),
-                Tone::Log => logarithmic(exposed),
+                Tone::Linear => [r, g, b],
+                Tone::Filmic => [filmic(r), filmic(g), filmic(b)],
+                Tone::Log => logarithmic([r, g, b]),
             }
         }
     }
@@ -118,6 +118,7 @@ fn within_gamut(color: [f32; 3]) -> [f32; 3] {
     color.map(|v| (grey + keep * (v - grey)).max(0.0))
 }
 
+#[inline]
 fn filmic(v: f32) -> f32 {
     // Far above, where squares would be too large, it is what it tends to.
     let v = v.min(1e4);

@@ -207,12 +207,11 @@ impl Done<'_> {
         if self.film.covered() == 0 && self.scene.sky.is_none() {
             line.push_str("note: nothing is in the picture; try --camera panorama, another --time or --when \"nearest BODY\"\n");
         }
-        let brightest = summary::brightest(self.film);
         let is_hole = self.film.body.iter().all(|body| *body == HOLE);
         if (self.film.covered() > 0 || self.scene.sky.is_some())
             && !self.is_dark_told
             && !is_hole
-            && summary::is_dark(brightest, &self.development)
+            && summary::is_dark(self.film, &self.development)
         {
             line.push_str(&format!("note: {}\n", summary::dark_note(self.options.coloring)));
         }

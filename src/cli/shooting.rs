@@ -219,7 +219,7 @@ impl Shooting<'_> {
             if self.each_metered {
                 development.ev = development.tone.metered(film.color.iter().copied());
             }
-            let dark = summary::is_dark(summary::brightest(film), &development);
+            let dark = summary::is_dark(film, &development);
             self.tally.dark += usize::from(dark && film.covered() > 0);
             let mut pixels = picture::pixels_srgb(film, &development);
             if let Some(overlay) = overlay {

@@ -280,14 +280,10 @@ fn count_in_words(count: u64) -> String {
     }
 }
 
-/// The greatest number of a film's colours.
-pub fn brightest(film: &Film) -> f32 {
-    film.color.iter().flatten().copied().fold(0.0, f32::max)
-}
-
-/// Whether so bright a point is black in a PNG.
-pub fn is_dark(brightest: f32, development: &Development) -> bool {
-    brightest * development.ev.exp2() < 1.5e-4
+/// Whether all of a film is black in a PNG.
+pub fn is_dark(film: &Film, development: &Development) -> bool {
+    let least = 1.5e-4 / development.ev.exp2();
+    !film.color.as_flattened().iter().any(|v| *v >= least)
 }
 
 /// What to try where all is black.

@@ -104,15 +104,22 @@ impl<'a> Facet<'a> {
         })
     }
 
-    #[inline]
-    fn colors_by(&self, at: DVec3, changes: impl FnOnce([f64; 3]) -> [[f64; 3]; 2]) -> Colors {
+    /// The surface's colours, where they are the same all over the triangle.
+    pub fn plain_colors(&self) -> Option<Colors> {
         let mesh = self.mesh;
         let textured = mesh.material_of(self.face).is_some_and(Material::is_textured);
-        if mesh.paint.is_of_faces() && !textured {
-            return mesh.colors(self.face, [1.0, 0.0, 0.0], |_| [1.0; 3]);
+        let plain = mesh.paint.is_of_faces() && !textured;
+        plain.then(|| mesh.colors(self.face, [1.0, 0.0, 0.0], |_| [1.0; 3]))
+    }
+
+    #[inline]
+    fn colors_by(&self, at: DVec3, changes: impl FnOnce([f64; 3]) -> [[f64; 3]; 2]) -> Colors {
+        if let Some(colors) = self.plain_colors() {
+            return colors;
         }
+        let mesh = self.mesh;
         let weights = clamped(self.weights(at));
-        if !textured {
+        if !mesh.material_of(self.face).is_some_and(Material::is_textured) {
             return mesh.colors(self.face, weights, |_| [1.0; 3]);
         }
         let corner_uv = mesh.corner_uv(self.face).unwrap_or_default();

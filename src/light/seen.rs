@@ -87,6 +87,22 @@ impl<'a> SurfaceLight<'a> {
     }
 }
 
+/// A surface that shines by itself, alike in all directions, in one colour.
+#[derive(Clone, Copy)]
+pub(crate) struct Glow<'a> {
+    coloring: Coloring,
+    material: &'a MaterialShading,
+    own: [f32; 3],
+}
+
+impl Glow<'_> {
+    /// What of it is seen.
+    #[inline]
+    pub fn radiance(&self, doppler: f64) -> [f32; 3] {
+        finite(self.material.shines(self.coloring, doppler, self.own))
+    }
+}
+
 /// A [`Shading`] as one observer sees it at one moment.
 #[derive(Clone, Debug)]
 pub struct SeenShading<'a> {
@@ -187,12 +203,21 @@ impl<'a> SeenShading<'a> {
         if coloring == Coloring::Doppler {
             return finite(false_color(doppler));
         }
-        let material = &self.shading.bodies[body].materials[material];
         let colors = colors();
-        if !material.lit && material.law == EmissionLaw::Isotropic {
-            return finite(material.shines(coloring, doppler, colors.sum()));
+        if let Some(glow) = self.glow(body, material, &colors) {
+            return glow.radiance(doppler);
         }
+        let material = &self.shading.bodies[body].materials[material];
         finite(self.at_point(body, material, doppler, colors, &point(), reaches))
+    }
+
+    /// Of a material that shines by itself, and alike in all directions, all there is to know.
+    #[inline]
+    pub(crate) fn glow(&self, body: usize, material: usize, colors: &Colors) -> Option<Glow<'a>> {
+        let coloring = self.shading.coloring;
+        let material = &self.shading.bodies[body].materials[material];
+        let even = coloring != Coloring::Doppler && !material.lit && material.law == EmissionLaw::Isotropic;
+        even.then(|| Glow { coloring, material, own: colors.sum() })
     }
 
     /// Linear sRGB radiance, in units of the film's white, of a sky of a colour that is seen with a Doppler factor; of none,

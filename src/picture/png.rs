@@ -10,7 +10,8 @@ pub fn pixels_srgb(film: &Film, development: &Development) -> Vec<u8> {
     let (block, shown) = (3 * 4096, development.curve());
     pixels.par_chunks_mut(block).zip(film.color.par_chunks(block / 3)).for_each(|(pixels, colors)| {
         for (pixel, color) in pixels.chunks_exact_mut(3).zip(colors) {
-            pixel.copy_from_slice(&shown(*color).map(encoded));
+            let [r, g, b] = shown(*color);
+            (pixel[0], pixel[1], pixel[2]) = (encoded(r), encoded(g), encoded(b));
         }
     });
     // At any exposure.

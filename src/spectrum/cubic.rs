@@ -2,7 +2,8 @@
 #[inline]
 pub(crate) fn cubic(t: f64) -> [f64; 4] {
     let (a, b, c) = (t + 1.0, t - 1.0, t - 2.0);
-    [-t * b * c / 6.0, a * b * c / 2.0, -a * t * c / 2.0, a * t * b / 6.0]
+    const SIXTH: f64 = 1.0 / 6.0;
+    [-t * b * c * SIXTH, a * b * c * 0.5, -a * t * c * 0.5, a * t * b * SIXTH]
 }
 
 #[cfg(test)]

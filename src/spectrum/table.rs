@@ -1,5 +1,6 @@
 use super::cubic::cubic;
 use super::response::Matrix;
+use glam::Vec4;
 use rayon::prelude::*;
 
 /// A matrix of colours by the logarithm of the Doppler factor: columns for red, green, blue, nine numbers.
@@ -176,14 +177,13 @@ impl DopplerTable {
     pub fn color(&self, ln_doppler: f64, own: [f32; 3]) -> [f32; 3] {
         let (w, nodes) = self.place(ln_doppler);
         // Four at a time.
-        let mut sum = [0.0; 4];
+        let mut sum = Vec4::ZERO;
         for (node, w) in nodes.iter().zip(w) {
             for (column, own) in node.iter().zip(own) {
-                let factor = w * own;
-                sum = std::array::from_fn(|k| sum[k] + factor * column[k]);
+                sum += w * own * Vec4::from_array(*column);
             }
         }
-        [sum[0], sum[1], sum[2]]
+        [sum.x, sum.y, sum.z]
     }
 
     /// How many nodes there are.

@@ -52,16 +52,82 @@ struct Rays {
 
 /// A triangle as a beam meets it: functions c + a·u + b·v of slopes from the middle.
 struct Edges {
-    edges: [Edge; 3],
+    /// Positive inside.
+    functions: [[f32; 3]; 3],
+    /// Where an edge itself belongs to the triangle 0, else the least number above.
+    least: [f32; 3],
     /// 1/t.
     nearness: [f32; 3],
 }
 
-struct Edge {
-    /// Positive inside.
-    function: [f32; 3],
-    /// Where the edge itself belongs to the triangle 0, else the least number above.
-    least: f32,
+/// How many triangles are made ready together, side by side in vectors.
+const TOGETHER: usize = 4;
+
+/// A number of each.
+type Each = [f64; TOGETHER];
+
+/// Triangles as a beam meets them, side by side.
+struct Several {
+    /// Whether a ray of the beam can hit it.
+    is_met: [bool; TOGETHER],
+    /// Planes through the origin and an edge, their insides positive: normals in the beam's order.
+    planes: [[Each; 3]; 3],
+    /// Of the middle of the beam.
+    middles: [Each; 3],
+    /// 1/t: in the middle, and by slopes from there.
+    nearness: [Each; 3],
+}
+
+impl Several {
+    #[inline(always)]
+    fn edges(&self, i: usize) -> Edges {
+        let function = |k: usize| {
+            let [_, u, v] = &self.planes[k];
+            [self.middles[k][i] as f32, u[i] as f32, v[i] as f32]
+        };
+        let least = |k: usize| {
+            let [x, y, z] = &self.planes[k];
+            if owns_boundary(DVec3::new(x[i], y[i], z[i])) { 0.0 } else { f32::from_bits(1) }
+        };
+        Edges {
+            functions: [function(0), function(1), function(2)],
+            least: [least(0), least(1), least(2)],
+            nearness: [self.nearness[0][i] as f32, self.nearness[1][i] as f32, self.nearness[2][i] as f32],
+        }
+    }
+}
+
+/// Cross products. Like all that is done with several, loops of plain arithmetic, which compilers make vectors of.
+#[inline(always)]
+fn cross(a: &[Each; 3], b: &[Each; 3]) -> [Each; 3] {
+    let mut product = [Each::default(); 3];
+    for k in 0..3 {
+        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+        for i in 0..TOGETHER {
+            product[k][i] = a[l][i] * b[m][i] - b[l][i] * a[m][i];
+        }
+    }
+    product
+}
+
+#[inline(always)]
+fn dot(a: &[Each; 3], b: &[Each; 3]) -> Each {
+    let mut product = Each::default();
+    for i in 0..TOGETHER {
+        product[i] = a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i];
+    }
+    product
+}
+
+#[inline(always)]
+fn difference(a: &[Each; 3], b: &[Each; 3]) -> [Each; 3] {
+    let mut difference = [Each::default(); 3];
+    for k in 0..3 {
+        for i in 0..TOGETHER {
+            difference[k][i] = a[k][i] - b[k][i];
+        }
+    }
+    difference
 }
 
 /// Rays from the origin of a beam, side by side.
@@ -255,9 +321,9 @@ impl Beam {
         let (place, slack) = origin.place(tree);
         let unit = tree.scale * inverse_unit(place);
         if let Some(leaves) = leaves {
-            for number in leaves {
+            for numbers in leaves.chunks(TOGETHER) {
                 // SAFETY: as this function.
-                unsafe { self.meet_leaf::<L>(tree, origin, unit, *number) };
+                unsafe { self.meet_leaves::<L>(tree, origin, unit, numbers) };
             }
             return;
         }
@@ -268,6 +334,8 @@ impl Beam {
         if let Some(near) = tree.nodes.first().and_then(|root| boxes.enters(root)) {
             stack.push((0, near));
         }
+        // Leaves that wait for others.
+        let (mut waiting, mut count) = ([0; TOGETHER], 0);
         while let Some((index, near)) = stack.pop() {
             if near > farthest {
                 continue;
@@ -293,36 +361,53 @@ impl Beam {
                 }
                 continue;
             }
-            let mut any = false;
             for number in node.first..node.first + node.count {
-                // SAFETY: as this function.
-                any |= unsafe { self.meet_leaf::<L>(tree, origin, unit, number) };
-            }
-            if any {
-                farthest = self.farthest(place);
+                waiting[count] = number;
+                count += 1;
+                if count == TOGETHER {
+                    count = 0;
+                    // SAFETY: as this function.
+                    if unsafe { self.meet_leaves::<L>(tree, origin, unit, &waiting) } {
+                        farthest = self.farthest(place);
+                    }
+                }
             }
         }
+        // SAFETY: as this function.
+        unsafe { self.meet_leaves::<L>(tree, origin, unit, &waiting[..count]) };
         self.stack = stack;
     }
 
-    /// Whether a leaf is nearer to any ray than what is known.
+    /// Whether any of some leaves, up to [`TOGETHER`], is nearer to any ray than what is known.
     #[inline(always)]
-    unsafe fn meet_leaf<L: Lanes>(
+    unsafe fn meet_leaves<L: Lanes>(
         &mut self,
         tree: &Tree,
         origin: &Origin<'_>,
         unit: f64,
-        number: u32,
+        numbers: &[u32],
     ) -> bool {
-        let leaf = tree.leaf(number);
-        let [a, b, c] = &leaf.corners;
-        let a = self.turned(origin.to(*a) * unit);
-        let b = self.turned(origin.to(*b) * unit);
-        let c = self.turned(origin.to(*c) * unit);
-        let Some(edges) = self.edges(a, b, c, leaf.one_sided) else { return false };
-        // SAFETY: as this function.
-        let (nearer, doubtful) = unsafe { self.meet::<L>(&edges, number) };
-        nearer | (doubtful && self.settle(tree, origin, unit, &edges, number))
+        let mut corners = [[Each::default(); 3]; 3];
+        let mut one_sided = [false; TOGETHER];
+        for (i, number) in numbers.iter().enumerate() {
+            let leaf = tree.leaf(*number);
+            one_sided[i] = leaf.one_sided;
+            for (of_all, corner) in corners.iter_mut().zip(leaf.corners) {
+                let corner = self.turned(origin.to(corner) * unit);
+                (of_all[0][i], of_all[1][i], of_all[2][i]) = (corner.x, corner.y, corner.z);
+            }
+        }
+        let several = self.several(&corners, one_sided);
+        let mut any = false;
+        for (i, number) in numbers.iter().enumerate() {
+            if several.is_met[i] {
+                let edges = several.edges(i);
+                // SAFETY: as this function.
+                let (nearer, doubtful) = unsafe { self.meet::<L>(&edges, *number) };
+                any |= nearer | (doubtful && self.settle(tree, origin, unit, &edges, *number));
+            }
+        }
+        any
     }
 
     /// The farthest any ray still has to look, in the tree's units.
@@ -345,37 +430,45 @@ impl Beam {
         DVec3::new(self.sign * v[self.order[0]], v[self.order[1]], v[self.order[2]])
     }
 
-    /// Of corners as [`turned`](Self::turned), which keeps or changes their winding with the sign; none for a triangle
-    /// seen edge-on or from the back it does not have, or one no ray of the beam can hit.
+    /// Of corners as [`turned`](Self::turned), which keeps or changes their winding with the sign. None is met that is
+    /// seen edge-on or from the back it does not have.
     #[inline(always)]
-    fn edges(&self, a: DVec3, b: DVec3, c: DVec3, one_sided: bool) -> Option<Edges> {
-        let opposite_a = b.cross(c);
-        let volume = a.dot(opposite_a);
-        // Also false for NaN.
-        if !(volume.abs() > 0.0 && volume < f64::INFINITY) || (one_sided && volume * self.sign >= 0.0) {
-            return None;
-        }
-        let flip = if volume < 0.0 { -1.0 } else { 1.0 };
+    fn several(&self, corners: &[[Each; 3]; 3], one_sided: [bool; TOGETHER]) -> Several {
+        let [a, b, c] = corners;
+        let mut planes = [cross(b, c), cross(c, a), cross(a, b)];
+        let volume = dot(a, &planes[0]);
+        let normal = cross(&difference(b, a), &difference(c, a));
+        let distance = dot(&normal, a);
         let [u0, v0] = self.middle;
         let half_u = 0.5 * (self.range[0][1] - self.range[0][0]);
         let half_v = 0.5 * (self.range[1][1] - self.range[1][0]);
-        let plane = |m: DVec3| {
-            let m = m * flip;
-            let middle = m.x + (m.y * u0 + m.z * v0);
-            // By more than f32 leaves over.
-            let most = middle + (m.y.abs() * half_u + m.z.abs() * half_v) * 1.000_001;
-            let least = if owns_boundary(m) { 0.0 } else { f32::from_bits(1) };
-            (most >= 0.0).then_some(Edge { function: [middle as f32, m.y as f32, m.z as f32], least })
-        };
-        let edges = [plane(opposite_a)?, plane(c.cross(a))?, plane(a.cross(b))?];
-        let normal = (b - a).cross(c - a);
-        let over = 1.0 / normal.dot(a);
-        if !over.is_finite() {
-            return None;
+        let (mut flip, mut is_met) = (Each::default(), [false; TOGETHER]);
+        for i in 0..TOGETHER {
+            flip[i] = if volume[i] < 0.0 { -1.0 } else { 1.0 };
+            let seen = !one_sided[i] | (volume[i] * self.sign < 0.0);
+            // Also false for NaN.
+            is_met[i] = seen & (volume[i].abs() > 0.0) & (volume[i].abs() < f64::INFINITY);
         }
-        let middle = normal.x + (normal.y * u0 + normal.z * v0);
-        let nearness = [(middle * over) as f32, (normal.y * over) as f32, (normal.z * over) as f32];
-        Some(Edges { edges, nearness })
+        let mut middles = [Each::default(); 3];
+        for (plane, middle) in planes.iter_mut().zip(&mut middles) {
+            for i in 0..TOGETHER {
+                let [x, u, v] = [plane[0][i] * flip[i], plane[1][i] * flip[i], plane[2][i] * flip[i]];
+                [plane[0][i], plane[1][i], plane[2][i]] = [x, u, v];
+                middle[i] = x + (u * u0 + v * v0);
+                // By more than f32 leaves over.
+                let most = middle[i] + (u.abs() * half_u + v.abs() * half_v) * 1.000_001;
+                is_met[i] &= most >= 0.0;
+            }
+        }
+        let mut nearness = [Each::default(); 3];
+        for i in 0..TOGETHER {
+            let over = 1.0 / distance[i];
+            is_met[i] &= over.abs() < f64::INFINITY;
+            nearness[0][i] = (normal[0][i] + (normal[1][i] * u0 + normal[2][i] * v0)) * over;
+            nearness[1][i] = normal[1][i] * over;
+            nearness[2][i] = normal[2][i] * over;
+        }
+        Several { is_met, planes, middles, nearness }
     }
 
     /// Tests all rays; whether any is hit nearer than before, and whether any cannot be told in f32.
@@ -385,9 +478,9 @@ impl Beam {
         // SAFETY: as this function; there are whole vectors of rays.
         unsafe {
             let splat = |f: &[f32; 3]| [L::splat(f[0]), L::splat(f[1]), L::splat(f[2])];
-            let [e0, e1, e2] = &triangle.edges;
-            let least = [L::splat(e0.least), L::splat(e1.least), L::splat(e2.least)];
-            let [e0, e1, e2] = [splat(&e0.function), splat(&e1.function), splat(&e2.function)];
+            let least = splat(&triangle.least);
+            let [e0, e1, e2] = &triangle.functions;
+            let [e0, e1, e2] = [splat(e0), splat(e1), splat(e2)];
             let near = splat(&triangle.nearness);
             let (above, below) = (L::splat(1.0 + CLOSE), L::splat(1.0 - CLOSE));
             let number = L::splat(f32::from_bits(number));
@@ -422,7 +515,7 @@ impl Beam {
         for i in 0..self.count {
             let [du, dv] = self.rays.from_middle.map(|d| f64::from(d[i]));
             let at = |[c, u, v]: [f32; 3]| f64::from(u) * du + (f64::from(v) * dv + f64::from(c));
-            let inside = triangle.edges.iter().all(|e| at(e.function) >= f64::from(e.least));
+            let inside = (0..3).all(|k| at(triangle.functions[k]) >= f64::from(triangle.least[k]));
             let known = f64::from(self.rays.nearness[i]);
             if !inside || (at(triangle.nearness) - known).abs() > 2.0 * f64::from(CLOSE) * known {
                 continue;
@@ -606,7 +699,7 @@ pub(super) mod tests {
                                 let at = meet(corners, rays.direction(ray)).filter(|at| *at > 0.0)?;
                                 Some((at, leaf.face))
                             };
-                            tree.leaves.iter().filter_map(hit).min_by(|a, b| a.0.total_cmp(&b.0))
+                            tree.leaves().filter_map(|leaf| hit(&leaf)).min_by(|a, b| a.0.total_cmp(&b.0))
                         })
                         .collect();
                     for kind in 0..3 {
@@ -621,7 +714,7 @@ pub(super) mod tests {
                         }
                         for (i, expected) in expected.iter().enumerate() {
                             let found = beam.found(i);
-                            let face = (found != NONE).then(|| tree.leaves[found as usize].face);
+                            let face = (found != NONE).then(|| tree.leaf(found).face);
                             hits += usize::from(face.is_some());
                             differ += usize::from(face != expected.map(|(_, face)| face));
                         }

@@ -179,8 +179,8 @@ impl Bundle {
             for group in groups {
                 masks[group] = entering(group);
             }
-            for leaf in &tree.leaves[node.first as usize..(node.first + node.count) as usize] {
-                let triangle = Triangle::new(leaf, tree);
+            for leaf in (node.first..node.first + node.count).map(|number| tree.leaf(number)) {
+                let triangle = Triangle::new(&leaf, tree);
                 for (group, mask) in masks.iter().enumerate().skip(first) {
                     let mask = mask & of_group(open, group);
                     if mask == 0 {
@@ -192,7 +192,7 @@ impl Bundle {
                         let i = GROUP * group + possible.trailing_zeros() as usize;
                         possible &= possible - 1;
                         if rays.points.faces[i] != leaf.face || rays.from != rays.to {
-                            open &= !(u64::from(rays.ray(i).hits(leaf)) << i);
+                            open &= !(u64::from(rays.ray(i).hits(&leaf)) << i);
                         }
                     }
                 }
@@ -491,7 +491,7 @@ mod tests {
                     (!0 >> (POINTS - points.count)) & if round % 5 == 4 { 0x0123_4567_89ab_cdef } else { !0 };
                 for (from, to) in (0..4).flat_map(|from| (0..4).map(move |to| (from, to))) {
                     let rays = Rays { stage: &stage, points: &points, ways: &ways, from, to };
-                    let every = |i: usize| tree.leaves.iter().any(|leaf| rays.ray(i).hits(leaf));
+                    let every = |i: usize| tree.leaves().any(|leaf| rays.ray(i).hits(&leaf));
                     let expected = (0..POINTS)
                         .filter(|&i| ways.open >> i & 1 == 1 && every(i))
                         .fold(0, |bits, i| bits | 1 << i);
@@ -509,7 +509,7 @@ mod tests {
                 let any = |i: usize| {
                     (0..4).any(|to| {
                         let rays = Rays { stage: &stage, points: &points, ways: &ways, from: 0, to };
-                        tree.leaves.iter().any(|leaf| rays.ray(i).hits(leaf))
+                        tree.leaves().any(|leaf| rays.ray(i).hits(&leaf))
                     })
                 };
                 assert_eq!(

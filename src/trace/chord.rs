@@ -88,7 +88,7 @@ impl Goal {
         let mut found: Option<Meeting> = None;
         let mut most = nearest - piece.from;
         self.visit(&chord, stack, &mut most, |leaf, most| {
-            let at = self.strike(&chord, piece, ray, &self.tree.leaves[leaf])?;
+            let at = self.strike(&chord, piece, ray, &self.tree.leaf(leaf as u32))?;
             if at >= most || piece.from + at <= 0.0 {
                 return None;
             }

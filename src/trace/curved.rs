@@ -162,7 +162,7 @@ impl Band {
             }
             Outcome::Body(hit) => {
                 let goal = &job.goals[hit.goal];
-                let face = goal.tree.leaves[hit.leaf].face;
+                let face = goal.tree.leaf(hit.leaf as u32).face;
                 let light = self.shade(job, pixel, weight, hit, face as usize);
                 (light, goal.body as i32, face as i32, hit.doppler, hit.distance)
             }

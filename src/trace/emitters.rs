@@ -44,14 +44,14 @@ impl Emitters {
                 let brightness = source.color.iter().sum::<f64>() * source.strength;
                 (brightness > 0.0).then_some(brightness)
             };
-            for (number, leaf) in target.tree.leaves.iter().enumerate() {
-                let Some(brightness) = shines(leaf).filter(|_| triangles.len() < MOST) else { continue };
+            for (number, leaf) in target.tree.leaves().enumerate() {
+                let Some(brightness) = shines(&leaf).filter(|_| triangles.len() < MOST) else { continue };
                 let [a, b, c] = leaf.corners;
                 let area = 0.5 * (b - a).cross(c - a).length();
                 if !(area * brightness > 0.0 && area.is_finite()) {
                     continue;
                 }
-                bright[index].resize(target.tree.leaves.len(), 0.0);
+                bright[index].resize(target.tree.count(), 0.0);
                 bright[index][number] = brightness;
                 whole += area * brightness;
                 triangles.push(Emitter { target: index, leaf: number as u32 });
@@ -74,7 +74,7 @@ impl Emitters {
         for &Emitter { target: of, leaf } in &self.triangles {
             let place = (stage.between(of, target) * event).xyz();
             let shining = &stage.targets[of];
-            let [a, b, c] = shining.tree.leaves[leaf as usize].corners;
+            let [a, b, c] = shining.tree.leaf(leaf).corners;
             let way = shining.map.offset_rest((a + b + c) / 3.0) - place;
             // From behind, a side of a closed body is hidden; from the front it counts by its angle.
             let facing = -(b - a).cross(c - a).dot(way);
@@ -98,7 +98,7 @@ impl Emitters {
         let place = random.unit();
         let index = sums.partition_point(|sum| *sum <= place).min(self.triangles.len() - 1);
         let Emitter { target, leaf } = self.triangles[index];
-        let [a, b, c] = targets[target].tree.leaves[leaf as usize].corners;
+        let [a, b, c] = targets[target].tree.leaf(leaf).corners;
         let (u, v) = (random.unit().sqrt(), random.unit());
         let x_rest = a + (b - a) * (u * (1.0 - v)) + (c - a) * (u * v);
         Some(Spot { target, leaf, x_rest })
@@ -112,7 +112,7 @@ impl Emitters {
         }
         let index = self.triangles.iter().position(|t| t.target == target && t.leaf == leaf);
         let share = index.map_or(0.0, |i| shares.sums[i] - if i > 0 { shares.sums[i - 1] } else { 0.0 });
-        let [a, b, c] = targets[target].tree.leaves[leaf as usize].corners;
+        let [a, b, c] = targets[target].tree.leaf(leaf).corners;
         2.0 * share / (b - a).cross(c - a).length()
     }
 }

@@ -115,7 +115,7 @@ impl<'a> World<'a> {
         let Some(source) = at.surface.source(at.colors, cosine, at.doppler) else { return };
         let share = chosen.density.map_or(1.0, |density| {
             let target = &self.stage.targets[at.target];
-            let [a, b, c] = target.tree.leaves[at.leaf as usize].corners;
+            let [a, b, c] = target.tree.leaf(at.leaf).corners;
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let way = at.point.event() - self.stage.between(at.target, from.target) * from.point.event();
             let other = self.emitters.density(&self.stage.targets, shares, at.target, at.leaf)
@@ -136,7 +136,7 @@ impl<'a> World<'a> {
     ) {
         let Some(spot) = self.emitters.choose(&self.stage.targets, &scratch.shares, random) else { return };
         let target = &self.stage.targets[spot.target];
-        let leaf = &target.tree.leaves[spot.leaf as usize];
+        let leaf = target.tree.leaf(spot.leaf);
         if spot.target == at.target && leaf.face == at.face {
             return;
         }

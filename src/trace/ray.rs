@@ -85,7 +85,7 @@ impl Ray<'_> {
                 continue;
             }
             for number in node.first..node.first + node.count {
-                let leaf = &tree.leaves[number as usize];
+                let leaf = &tree.leaf(number);
                 if self.but == Some(leaf.face) {
                     continue;
                 }

@@ -4,10 +4,10 @@ use super::lists::Lists;
 use super::origin::Origin;
 use super::path::{self, Vertex, World};
 use super::random::Random;
-use super::stage::{Sights, Stage};
+use super::stage::{Sights, Stage, Target};
 use crate::film::Rows;
-use crate::light::{Facet, Points, SeenShading, Ways};
-use crate::scene::{Lens, Sky};
+use crate::light::{Facet, Glow, Points, SeenShading, Ways};
+use crate::scene::{Colors, Lens, Sky};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -110,6 +110,24 @@ struct Sight {
     leaf: u32,
     /// The direction in the target's rest frame.
     rest: DVec3,
+}
+
+/// A triangle that is met, with what is the same all over it.
+struct Met<'a> {
+    facet: Facet<'a>,
+    material: usize,
+    plain: Option<Colors>,
+    glow: Option<Glow<'a>>,
+}
+
+impl<'a> Met<'a> {
+    fn new(shading: &SeenShading<'a>, target: &'a Target, leaf: u32) -> Self {
+        let facet = target.facet(leaf);
+        let material = target.mesh.material_index(facet.face());
+        let plain = facet.plain_colors();
+        let glow = plain.as_ref().and_then(|colors| shading.glow(target.body, material, colors));
+        Self { facet, material, plain, glow }
+    }
 }
 
 /// What is to be drawn.
@@ -361,7 +379,8 @@ impl Tile {
         // Each of many samples stands for a part of the pixel.
         let spread = f64::from(weight.sqrt());
         // The triangle met last.
-        let mut last: Option<(usize, u32, Facet<'_>)> = None;
+        let mut last = (0, NONE);
+        let mut met = None;
         for (number, sight) in self.sights.iter().enumerate() {
             if sight.leaf == NONE {
                 if let Some((sky, world_from_observer)) = &job.sky {
@@ -370,12 +389,13 @@ impl Tile {
                 continue;
             }
             let target = &job.stage.targets[sight.target];
-            let facet = match last {
-                Some((of, leaf, facet)) if (of, leaf) == (sight.target, sight.leaf) => facet,
-                _ => target.facet(sight.leaf),
-            };
-            last = Some((sight.target, sight.leaf, facet));
-            let at = sight.rest / sight.nearness;
+            if last != (sight.target, sight.leaf) {
+                last = (sight.target, sight.leaf);
+                met = Some(Met::new(job.shading, target, sight.leaf));
+            }
+            let Some(Met { facet, material, plain, glow }) = &met else { continue };
+            let material = *material;
+            let at = || sight.rest / sight.nearness;
             let doppler = sight.length / target.sky.boosted(sight.direction, sight.length).length;
             let sights = || {
                 // A look along the line of sight itself where there is no neighbour: as sharp as can be.
@@ -383,19 +403,22 @@ impl Tile {
                     |step: DVec2| job.lens.direction(sight.at + step * spread).unwrap_or(sight.direction);
                 [sight.direction, to(DVec2::X), to(DVec2::Y)].map(|v| target.rest_direction(v, v.length()))
             };
-            let material = target.mesh.material_index(facet.face());
-            let mut light = job.shading.radiance_with_shadows(
-                target.body,
-                material,
-                doppler,
-                || facet.colors(at, sights),
-                || facet.point(at),
-                // Paths find out where light from everywhere comes in.
-                |light| {
-                    self.lit[light] >> number & 1 == 1
-                        && !(job.world.is_some() && job.shading.is_ambient(light))
-                },
-            );
+            let colors = || plain.unwrap_or_else(|| facet.colors(at(), sights));
+            let shadowed = || {
+                job.shading.radiance_with_shadows(
+                    target.body,
+                    material,
+                    doppler,
+                    colors,
+                    || facet.point(at()),
+                    // Paths find out where light from everywhere comes in.
+                    |light| {
+                        self.lit[light] >> number & 1 == 1
+                            && !(job.world.is_some() && job.shading.is_ambient(light))
+                    },
+                )
+            };
+            let mut light = glow.map_or_else(shadowed, |glow| glow.radiance(doppler));
             if let Some(world) = job.world
                 && job.shading.is_lit(target.body, material)
             {
@@ -404,8 +427,8 @@ impl Tile {
                     target: sight.target,
                     leaf: sight.leaf,
                     face: facet.face() as u32,
-                    point: facet.point(at),
-                    colors: facet.colors(at, sights),
+                    point: facet.point(at()),
+                    colors: colors(),
                     surface,
                     gloss: *surface.gloss(),
                     doppler,

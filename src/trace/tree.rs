@@ -14,7 +14,10 @@ use std::time::Duration;
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     pub nodes: Vec<Node>,
-    pub leaves: Vec<Leaf>,
+    /// In the order of the nodes that hold them.
+    leaves: Vec<Indexed>,
+    /// The corners of these, in the order in which they are met first, so that what is near in space is near in memory.
+    vertices: Vec<DVec3>,
     /// Where there are no boxes: leaves are the mesh's triangles in its order, and are made as they are asked for.
     mesh: Option<Arc<Mesh>>,
     /// The mesh's middle.
@@ -47,6 +50,17 @@ pub(super) struct Leaf {
     pub one_sided: bool,
 }
 
+/// As it is kept.
+#[derive(Clone, Copy, Debug)]
+struct Indexed {
+    corners: [u32; 3],
+    /// Number of the triangle in the mesh, or [`ONE_SIDED`] more.
+    face: u32,
+}
+
+/// No mesh has as many triangles.
+const ONE_SIDED: u32 = 1 << 31;
+
 struct Bounds(Aabb);
 
 impl Boundable for Bounds {
@@ -73,8 +87,22 @@ impl Tree {
             })
             .collect();
         let (nodes, order) = if crowd(&bounds) > CROWD { halved(&bounds) } else { built(&bounds) };
-        let leaves = order.iter().map(|&face| Leaf::new(mesh, face)).collect();
-        Self { nodes, leaves, ..empty }
+        let mut numbers = vec![u32::MAX; mesh.vertex_count()];
+        let mut vertices = Vec::with_capacity(mesh.vertex_count());
+        let mut number = |vertex: u32| {
+            let number = &mut numbers[vertex as usize];
+            if *number == u32::MAX {
+                *number = vertices.len() as u32;
+                vertices.push(mesh.vertex(vertex));
+            }
+            *number
+        };
+        let leaf = |&face: &u32| {
+            let side = if mesh.is_one_sided(face as usize) { ONE_SIDED } else { 0 };
+            Indexed { corners: mesh.triangles[face as usize].map(&mut number), face: face | side }
+        };
+        let leaves = order.iter().map(leaf).collect();
+        Self { nodes, leaves, vertices, ..empty }
     }
 
     /// Without boxes, for who knows where to look.
@@ -91,9 +119,26 @@ impl Tree {
     #[inline(always)]
     pub fn leaf(&self, number: u32) -> Leaf {
         match &self.mesh {
-            None => self.leaves[number as usize],
-            Some(mesh) => Leaf::new(mesh, number),
+            None => {
+                let Indexed { corners: [a, b, c], face } = self.leaves[number as usize];
+                let corner = |i: u32| self.vertices[i as usize];
+                Leaf {
+                    corners: [corner(a), corner(b), corner(c)],
+                    face: face & !ONE_SIDED,
+                    one_sided: face >= ONE_SIDED,
+                }
+            }
+            Some(mesh) => Leaf {
+                corners: mesh.corners(number as usize),
+                face: number,
+                one_sided: mesh.is_one_sided(number as usize),
+            },
         }
+    }
+
+    /// All of them.
+    pub fn leaves(&self) -> impl Iterator<Item = Leaf> {
+        (0..self.count() as u32).map(|number| self.leaf(number))
     }
 
     fn empty(mesh: &Mesh) -> Self {
@@ -105,7 +150,8 @@ impl Tree {
         let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
         let vertices = (0..mesh.vertex_count() as u32).into_par_iter().with_min_len(1 << 12);
         let radius = vertices.map(|v| mesh.vertex(v).distance(centre)).reduce(|| 0.0, f64::max);
-        Self { nodes: Vec::new(), leaves: Vec::new(), mesh: None, centre, scale, radius }
+        let (nodes, leaves, vertices) = Default::default();
+        Self { nodes, leaves, vertices, mesh: None, centre, scale, radius }
     }
 }
 
@@ -171,14 +217,6 @@ fn halved(bounds: &[Bounds]) -> (Vec<Node>, Vec<u32>) {
     (nodes, order)
 }
 
-impl Leaf {
-    #[inline(always)]
-    fn new(mesh: &Mesh, face: u32) -> Self {
-        let (corners, one_sided) = (mesh.corners(face as usize), mesh.is_one_sided(face as usize));
-        Self { corners, face, one_sided }
-    }
-}
-
 impl Tree {
     /// Asks for what is below a node, which will be needed soon.
     #[inline(always)]
@@ -194,9 +232,7 @@ impl Tree {
             if node.count == 0 {
                 ask(self.nodes.as_ptr().wrapping_add(first).cast());
             } else {
-                let leaf = self.leaves.as_ptr().wrapping_add(first).cast::<i8>();
-                ask(leaf);
-                ask(leaf.wrapping_add(64));
+                ask(self.leaves.as_ptr().wrapping_add(first).cast());
             }
         }
     }
@@ -227,7 +263,7 @@ mod tests {
                         stack.push((node.first as usize + 1, around));
                         continue;
                     }
-                    for leaf in &tree.leaves[node.first as usize..][..node.count as usize] {
+                    for leaf in (node.first..node.first + node.count).map(|number| tree.leaf(number)) {
                         found[leaf.face as usize] += 1;
                         for corner in mesh.corners(leaf.face as usize) {
                             let at = (corner - tree.centre) * tree.scale;
