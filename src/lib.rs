@@ -57,6 +57,7 @@ pub mod color;
 pub mod drawing;
 pub mod export;
 pub mod exposure;
+pub mod figure;
 pub mod film;
 pub mod light;
 pub mod measure;

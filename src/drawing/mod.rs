@@ -10,11 +10,11 @@ mod caption;
 mod curves;
 mod legend;
 mod mesh_edges;
-mod number;
+pub(crate) mod number;
 mod overlay;
 mod scale_bar;
 mod sheet;
-mod text;
+pub(crate) mod text;
 
 pub use caption::{Caption, CaptionError};
 pub use mesh_edges::Edges;

@@ -1,7 +1,7 @@
 //! Numbers as people write them.
 
 /// `value` with so many significant digits at most, no zeros at the end; 4·10⁻⁷ where it is very large or small.
-pub(super) fn significant(value: f64, digits: usize) -> String {
+pub(crate) fn significant(value: f64, digits: usize) -> String {
     let scientific = format!("{value:.*e}", digits.max(1) - 1);
     let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
     let exponent: i32 = exponent.parse().unwrap_or(0);
@@ -19,7 +19,7 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
 }
 
 /// `value` with so many decimals.
-pub(super) fn fixed(value: f64, decimals: usize) -> String {
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let zero = !text.contains(|c: char| c.is_ascii_digit() && c != '0');
     if zero { text.replace('-', "") } else { text.replace('-', "−") }
@@ -36,7 +36,7 @@ pub(super) fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-fn superscript(exponent: i32) -> String {
+pub(crate) fn superscript(exponent: i32) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
         '1' => '¹',

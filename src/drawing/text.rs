@@ -32,13 +32,13 @@ fn scale(em: f64) -> f32 {
 }
 
 /// Width of a line in pixels, letters of `em` pixels.
-pub(super) fn width(text: &str, em: f64) -> f64 {
+pub(crate) fn width(text: &str, em: f64) -> f64 {
     let end = glyphs(text).last().map_or(0.0, |(id, at)| at + FONT.h_advance_unscaled(id));
     f64::from(end * scale(em))
 }
 
 /// The outline of a line whose base line begins at `at`.
-fn outline(text: &str, em: f64, at: DVec2) -> Option<Path> {
+pub(crate) fn outline(text: &str, em: f64, at: DVec2) -> Option<Path> {
     let scale = scale(em);
     let mut builder = PathBuilder::new();
     for (id, start) in glyphs(text) {
