@@ -1,13 +1,12 @@
 use super::drawing::DrawingFlags;
 use super::look::LookFlags;
+use super::progress::progress_bar;
 use super::report::{ReportFlags, check_target};
 use super::shooting::{Panel, Shooting, Take, Tally};
 use super::values::{number, range};
 use super::{Fault, stop, summary};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use terrell::picture::MovieFormat;
@@ -118,7 +117,11 @@ impl Animate {
             takes: &takes,
             each_metered: self.look.develop.is_each(),
             size,
-            bar: progress_bar(takes.iter().map(|t| t.animation.frames as usize).sum(), self.report.quiet),
+            bar: progress_bar(
+                takes.iter().map(|t| t.animation.frames as usize).sum(),
+                "frames",
+                self.report.quiet,
+            ),
             tally: Tally::default(),
             notes: Vec::new(),
         };
@@ -228,17 +231,6 @@ impl Animate {
         }
         Ok(animation)
     }
-}
-
-/// A bar with the time left, on a terminal only.
-fn progress_bar(frames: usize, quiet: bool) -> ProgressBar {
-    let shown = !quiet && std::io::stderr().is_terminal();
-    let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-    let bar = ProgressBar::with_draw_target(Some(frames as u64), target);
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} frames, {per_sec}, {eta} left") {
-        bar.set_style(style);
-    }
-    bar
 }
 
 /// What there is to report.

@@ -1,11 +1,13 @@
 //! parse → run → report; a file a subcommand.
 
 mod animate;
+mod chart;
 mod compare;
 mod completions;
 mod drawing;
 mod locate;
 mod look;
+mod progress;
 mod render;
 mod report;
 mod scenes;
@@ -45,6 +47,7 @@ enum Command {
     Transform(transform::Transform),
     Locate(locate::Locate),
     Compare(Box<compare::Compare>),
+    Chart(Box<chart::Chart>),
     Scenes(scenes::Scenes),
     Completions(completions::Completions),
 }
@@ -74,6 +77,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Transform(transform) => transform.run(),
         Command::Locate(locate) => locate.run(),
         Command::Compare(compare) => compare.run(),
+        Command::Chart(chart) => chart.run(),
         Command::Scenes(scenes) => scenes.run(),
         Command::Completions(completions) => completions.run(),
     };

@@ -178,7 +178,11 @@ impl Ruler {
                     continue;
                 }
                 let text = if digit == 1 && decade.rem_euclid(every) == 0 {
-                    Some(if written.is_empty() { power(decade) } else { significant(10f64.powi(decade), 1) })
+                    Some(if written.is_empty() {
+                        power_of_ten(decade)
+                    } else {
+                        significant(10f64.powi(decade), 1)
+                    })
                 } else {
                     written.contains(&digit).then(|| significant(f64::from(digit) * 10f64.powi(decade), 1))
                 };
@@ -189,8 +193,8 @@ impl Ruler {
     }
 }
 
-/// Of ten.
-fn power(exponent: i32) -> String {
+/// 10 to a power, as people write it.
+pub fn power_of_ten(exponent: i32) -> String {
     match exponent {
         0 => "1".to_owned(),
         1 => "10".to_owned(),

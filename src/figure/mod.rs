@@ -14,7 +14,7 @@ mod panel;
 mod svg;
 mod words;
 
-pub use axis::{Axis, Scale};
+pub use axis::{Axis, Scale, power_of_ten};
 pub use heat_map::HeatMap;
 pub use layout::Figure;
 pub use marker::{INKS, Marker};
