@@ -4,18 +4,22 @@
 
 mod comparison;
 mod deflection;
+mod displacement;
 mod flip;
 mod geodesics;
 mod marks;
 mod pareto;
 mod reference;
+mod sweep;
 mod timing;
 
 pub use comparison::{Comparison, Disagreement, Figures, Radiance, SizesDiffer, Worst};
 pub use deflection::schwarzschild_deflection;
+pub use displacement::{Displacement, SeenBody, beyond_faces, edge_displacement, f32_displacement, in_f32};
 pub use flip::{FlipError, Perceived, flip};
 pub use geodesics::{GeodesicPoint, GeodesicSweep};
 pub use marks::{Faces, Mark};
 pub use pareto::pareto_front;
 pub use reference::{Corners, Known, Reference};
+pub use sweep::{Measured, Sweep, SweepError, SweepPoint, SweepWay, Vertices, series_names, usual_ways};
 pub use timing::{Times, interleaved};

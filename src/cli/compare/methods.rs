@@ -1,12 +1,10 @@
 use std::time::{Duration, Instant};
-use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::light::DopplerAt;
-use terrell::measure::Corners;
+use terrell::measure::Times;
 use terrell::plan::Method;
 use terrell::render::{Options, Raster, RenderError, Report, render_again};
 use terrell::scene::{Camera, Scene};
-use terrell::trace::{Look, Paths, Tracer};
 
 /// A way to draw a scene.
 pub struct Way {
@@ -88,43 +86,6 @@ impl Way {
             report = render_again(scene, camera, &options, &prepared, &mut film, |_| ())?;
             picture.push(start.elapsed());
         }
-        Ok(Drawn { film, report, once: median(once), picture: median(picture) })
-    }
-}
-
-/// What rays through the corners of pixels see, of a film of what those through their centres see.
-pub fn corners(
-    scene: &Scene,
-    camera: &Camera,
-    options: &Options,
-    centres: &Film,
-) -> Result<Corners, RenderError> {
-    // Whatever it is, it is asked what it is only.
-    let options = Options { coloring: Coloring::Doppler, ..WAYS[0].options(options) };
-    let prepared = options.prepare(scene, [camera])?;
-    let (shading, tracer) = (prepared.shading.seen_by(&camera.observer), Tracer::new(scene));
-    let films = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|corner| {
-        let mut film = Film::new(0, 0);
-        let look = Look { samples: &[corner], shading: &shading, paths: Paths::default() };
-        tracer.trace(scene, camera, &look, &mut film, |_, _| ());
-        film
-    });
-    Ok(Corners::new(centres, &films))
-}
-
-fn median(mut times: Vec<Duration>) -> Duration {
-    times.sort_unstable();
-    let middle = times.len() / 2;
-    if times.len() % 2 == 1 { times[middle] } else { (times[middle - 1] + times[middle]) / 2 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn medians() {
-        let of = |ms: &[u64]| median(ms.iter().map(|&ms| Duration::from_millis(ms)).collect()).as_millis();
-        assert_eq!([of(&[7]), of(&[9, 1, 2]), of(&[4, 2, 100, 1])], [7, 2, 3]);
+        Ok(Drawn { film, report, once: Times::new(once).median(), picture: Times::new(picture).median() })
     }
 }

@@ -11,7 +11,7 @@ use super::report::ReportFlags;
 use super::summary;
 use clap::Args;
 use folders::{Folders, check_folder, folder_names};
-use methods::{WAYS, Way, corners};
+use methods::{WAYS, Way};
 use pictures::{Pictures, pair};
 use progress::Progress;
 use serde_json::json;
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use terrell::color::Coloring;
 use terrell::film::Film;
-use terrell::measure::{Comparison, Faces, Known, Perceived, Reference, flip};
+use terrell::measure::{Comparison, Corners, Faces, Known, Perceived, Reference, flip};
 use terrell::picture::{self, Pending};
 use terrell::plan::{has_reflections, is_of_polygons};
 use terrell::render::Options;
@@ -255,7 +255,7 @@ impl Compare {
             (Some(given), _) => given,
             (None, Some((_, Ok(traced)))) => {
                 let film = std::mem::replace(&mut traced.film, Film::new(0, 0));
-                let corners = Some(corners(scene, camera, options, &film)?);
+                let corners = Some(Corners::traced(scene, camera, options, &film)?);
                 own = Reference { corners, ..Reference::from(film) };
                 &own
             }

@@ -1,0 +1,328 @@
+use super::displacement::{
+    Displacement, SeenBody, beyond_faces, edge_displacement, f32_displacement, in_f32,
+};
+use super::{Comparison, Corners, Figures, FlipError, Perceived, Reference, Times, flip, interleaved};
+use crate::apparent::{ApparentMesh, Field, Subdivision, TooManyPieces};
+use crate::color::Coloring;
+use crate::film::{Film, Samples};
+use crate::light::DopplerAt;
+use crate::picture::pixels_srgb;
+use crate::plan::Method;
+use crate::raster::{Drawable, shade_again};
+use crate::relativity::ApparentMap;
+use crate::render::{Options, Prepared, Raster, RenderError, render_again};
+use crate::scene::{Camera, Scene};
+use crate::tone::Development;
+use crate::trace::{Look, Paths, Tracer};
+use std::time::{Duration, Instant};
+
+/// A way to draw a scene, one of those a sweep compares.
+#[derive(Clone, Debug)]
+pub struct SweepWay {
+    /// What it is a variant of: "exact", "apparent" and so on.
+    pub series: &'static str,
+    /// How it is drawn.
+    pub options: Options,
+    /// What becomes of vertices.
+    pub vertices: Vertices,
+}
+
+/// What becomes of the vertices of apparent shading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Vertices {
+    /// They are mapped in f64, and edges are cut to the tolerance.
+    #[default]
+    Cut,
+    /// They are mapped in f64, and nothing is cut.
+    Linear,
+    /// They are cut in f64, then mapped in f32: what f32 alone does to a picture. Nobody would draw so, and its time
+    /// tells nothing.
+    CutF32,
+}
+
+/// What a way makes of a scene.
+#[derive(Clone, Debug)]
+pub struct SweepPoint {
+    /// The way.
+    pub way: SweepWay,
+    /// What it made, or why it made nothing.
+    pub measured: Result<Measured, String>,
+}
+
+/// What was measured of one way.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// Triangles drawn.
+    pub pieces: usize,
+    /// What is done once a scene, in one run.
+    pub preparation: Duration,
+    /// What is done for every picture; none where that tells nothing.
+    pub frame: Option<Times>,
+    /// How far edges are drawn from where they are seen, if edges are drawn.
+    pub edges: Option<Displacement>,
+    /// How far pixels lie outside of what they show.
+    pub beyond: Displacement,
+    /// Against rays along the same lines of sight.
+    pub seen: Figures,
+    /// Against rays with many samples: of light alone.
+    pub light: Figures,
+    /// Likewise, as an eye sees it.
+    pub perceived: Perceived,
+}
+
+impl Measured {
+    /// The worst displacement there is, of edges or of pixels.
+    pub fn displacement(&self) -> f64 {
+        self.edges.map_or(0.0, |edges| edges.worst).max(self.beyond.worst)
+    }
+
+    /// Pixels that see another body or another face than rays do.
+    pub fn wrong_pixels(&self) -> usize {
+        let all = [&self.seen.silhouette, &self.seen.edges];
+        all.into_iter().flatten().map(|disagreement| disagreement.pixels).sum()
+    }
+}
+
+/// Why a sweep could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// The scene cannot be traced.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// Pictures that cannot be compared.
+    #[error(transparent)]
+    Flip(#[from] FlipError),
+}
+
+/// One scene, drawn in several ways.
+pub struct Sweep<'a> {
+    /// What is drawn.
+    pub scene: &'a Scene,
+    /// From where.
+    pub camera: &'a Camera,
+    /// How.
+    pub ways: Vec<SweepWay>,
+    /// Samples of a pixel of what light is compared with.
+    pub reference_samples: u32,
+    /// How often each is timed.
+    pub repeats: u32,
+}
+
+impl Sweep<'_> {
+    /// Draws and measures all; `develop` says how light is shown to who compares pictures, given the reference. `done`
+    /// hears of each picture timed.
+    ///
+    /// # Errors
+    /// If the scene cannot be traced; what a single way cannot draw is said with its [point](SweepPoint).
+    pub fn run(
+        &self,
+        options: &Options,
+        develop: impl FnOnce(&Film) -> Result<Development, RenderError>,
+        mut done: impl FnMut(),
+    ) -> Result<Vec<SweepPoint>, SweepError> {
+        let traced = Options { method: Method::Trace, doppler_at: DopplerAt::Pixel, ..options.clone() };
+        let many = self.film(&Options { samples: self.reference_samples, ..traced.clone() })?;
+        let one = self.film(&Options { samples: 1, ..traced.clone() })?;
+        let corners = Some(self.corners(&traced, &one)?);
+        let development = develop(&many)?;
+        let references = References {
+            lines: Reference { corners, ..one.into() },
+            shown: pixels_srgb(&many, &development),
+            many: many.into(),
+            development,
+        };
+        // What a way cannot do is known before anything is timed.
+        let mut prepared = Vec::with_capacity(self.ways.len());
+        for way in &self.ways {
+            let start = Instant::now();
+            let made = way.options.prepare(self.scene, [self.camera])?;
+            prepared.push((made, start.elapsed()));
+        }
+        let mut film = Film::new(0, 0);
+        let mut points = Vec::with_capacity(self.ways.len());
+        let mut timed = Vec::new();
+        for (index, (way, (prepared, preparation))) in self.ways.iter().zip(&prepared).enumerate() {
+            let drawn = self.draw(way, prepared, &mut film);
+            let measured = match drawn {
+                Ok(pieces) => Ok(self.measure(way, pieces, *preparation, &film, &references)?),
+                Err(fault) => Err(fault.to_string()),
+            };
+            if measured.is_ok() && way.vertices != Vertices::CutF32 {
+                timed.push(index);
+            }
+            points.push(SweepPoint { way: way.clone(), measured });
+        }
+        let draw = |job: usize| {
+            let index = timed[job];
+            self.draw(&self.ways[index], &prepared[index].0, &mut film).map(drop)
+        };
+        let times = interleaved(timed.len(), self.repeats, draw, &mut done)?;
+        for (index, times) in timed.iter().zip(times) {
+            if let Ok(measured) = &mut points[*index].measured {
+                measured.frame = Some(times);
+            }
+        }
+        Ok(points)
+    }
+
+    fn film(&self, options: &Options) -> Result<Film, RenderError> {
+        let mut film = Film::new(0, 0);
+        let prepared = options.prepare(self.scene, [self.camera])?;
+        render_again(self.scene, self.camera, options, &prepared, &mut film, |_| ())?;
+        Ok(film)
+    }
+
+    fn corners(&self, options: &Options, centres: &Film) -> Result<Corners, RenderError> {
+        Corners::traced(self.scene, self.camera, options, centres)
+    }
+
+    /// One picture; how many triangles were drawn.
+    fn draw(&self, way: &SweepWay, prepared: &Prepared, film: &mut Film) -> Result<usize, RenderError> {
+        if way.vertices == Vertices::Cut {
+            let report = render_again(self.scene, self.camera, &way.options, prepared, film, |_| ())?;
+            return Ok(report.pieces);
+        }
+        let bodies = self.seen(way)?;
+        let drawables: Vec<Drawable<'_>> = bodies
+            .iter()
+            .enumerate()
+            .map(|(body, (map, mesh, seen))| Drawable { body, mesh, map, seen })
+            .collect();
+        let shading = prepared.shading.seen_by(&self.camera.observer);
+        shade_again(&drawables, &self.camera.lens, &Samples::new(way.options.samples), &shading, film);
+        Ok(bodies.iter().map(|(.., seen)| seen.triangles.len()).sum())
+    }
+
+    /// The bodies as they are drawn.
+    fn seen(&self, way: &SweepWay) -> Result<Vec<SeenBody>, TooManyPieces> {
+        let field = Field::new(&self.camera.lens);
+        let how = Subdivision { tolerance: way.options.tolerance, most: way.options.most_pieces };
+        let body = |body: &crate::scene::Body| {
+            let map = ApparentMap::new(&body.motion, &self.camera.observer);
+            let mesh = body.mesh_seen(&self.camera.observer);
+            let mut seen = match way.vertices {
+                Vertices::Linear => ApparentMesh::linear(&mesh, &map),
+                Vertices::Cut | Vertices::CutF32 => ApparentMesh::new(&mesh, &map, &field, &how)?,
+            };
+            if way.vertices == Vertices::CutF32 {
+                seen.vertices.iter_mut().for_each(|vertex| *vertex = in_f32(&map, *vertex));
+            }
+            Ok((map, mesh, seen))
+        };
+        self.scene.bodies.iter().map(body).collect()
+    }
+
+    fn measure(
+        &self,
+        way: &SweepWay,
+        pieces: usize,
+        preparation: Duration,
+        film: &Film,
+        references: &References,
+    ) -> Result<Measured, SweepError> {
+        let lens = &self.camera.lens;
+        let edges = match (way.options.method, way.vertices) {
+            (Method::Apparent, Vertices::CutF32) => {
+                let exact = SweepWay { vertices: Vertices::Cut, ..way.clone() };
+                Some(f32_displacement(&self.seen(&exact).map_err(RenderError::from)?, lens))
+            }
+            (Method::Apparent, _) => {
+                Some(edge_displacement(&self.seen(way).map_err(RenderError::from)?, lens))
+            }
+            _ => None,
+        };
+        let compare = |reference| Comparison::new(reference, film).expect("all are of one size").whole;
+        let shown = pixels_srgb(film, &references.development);
+        Ok(Measured {
+            pieces,
+            preparation,
+            frame: None,
+            edges,
+            beyond: beyond_faces(self.scene, self.camera, film),
+            seen: compare(&references.lines),
+            light: compare(&references.many),
+            perceived: flip([film.width, film.height], &references.shown, &shown)?,
+        })
+    }
+}
+
+/// What films are compared with.
+struct References {
+    /// Rays along the same lines of sight.
+    lines: Reference,
+    /// Rays with many samples.
+    many: Reference,
+    /// The latter, developed.
+    shown: Vec<u8>,
+    development: Development,
+}
+
+impl Corners {
+    /// What rays through the corners of pixels see, of a film of what those through their centres see.
+    ///
+    /// # Errors
+    /// If the scene cannot be traced.
+    pub fn traced(
+        scene: &Scene,
+        camera: &Camera,
+        options: &Options,
+        centres: &Film,
+    ) -> Result<Self, RenderError> {
+        // Whatever it is, it is asked what it is only.
+        let options = Options {
+            method: Method::Trace,
+            doppler_at: DopplerAt::Pixel,
+            coloring: Coloring::Doppler,
+            ..options.clone()
+        };
+        let prepared = options.prepare(scene, [camera])?;
+        let (shading, tracer) = (prepared.shading.seen_by(&camera.observer), Tracer::new(scene));
+        let films = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|corner| {
+            let mut film = Film::new(0, 0);
+            let look = Look { samples: &[corner], shading: &shading, paths: Paths::default() };
+            tracer.trace(scene, camera, &look, &mut film, |_, _| ());
+            film
+        });
+        Ok(Self::new(centres, &films))
+    }
+}
+
+/// The ways a sweep usually compares: exact shading and rays with these samples a pixel; apparent shading at these
+/// tolerances, by every raster; without cuts; with the Doppler factor at vertices; with vertices in f32.
+pub fn usual_ways(options: &Options, tolerances: &[f64], samples: &[u32]) -> Vec<SweepWay> {
+    let way = |series, options, vertices| SweepWay { series, options, vertices };
+    let mut ways = Vec::new();
+    for (series, method) in [("exact", Method::Exact), ("trace", Method::Trace)] {
+        for &samples in samples {
+            let options = Options { method, samples, doppler_at: DopplerAt::Pixel, ..options.clone() };
+            ways.push(way(series, options, Vertices::Cut));
+        }
+    }
+    let apparent = Options { method: Method::Apparent, samples: 1, ..options.clone() };
+    for (series, raster) in RASTERS {
+        for &tolerance in tolerances {
+            ways.push(way(series, Options { tolerance, raster, ..apparent.clone() }, Vertices::Cut));
+        }
+    }
+    ways.push(way("uncut", apparent.clone(), Vertices::Linear));
+    for &tolerance in tolerances {
+        let at_vertices = Options { tolerance, doppler_at: DopplerAt::Vertex, ..apparent.clone() };
+        ways.push(way("D at vertices", at_vertices, Vertices::Cut));
+    }
+    let finest = tolerances.iter().copied().fold(f64::INFINITY, f64::min);
+    if finest.is_finite() {
+        ways.push(way("f32 vertices", Options { tolerance: finest, ..apparent }, Vertices::CutF32));
+    }
+    ways
+}
+
+/// What cut triangles are drawn by, each a series.
+const RASTERS: [(&str, Raster); 2] = [("apparent", Raster::Cpu), ("painter", Raster::Skia)];
+
+/// The names of all series there are, in their order.
+pub fn series_names() -> Vec<&'static str> {
+    let mut names: Vec<&str> =
+        usual_ways(&Options::default(), &[1.0], &[1]).iter().map(|way| way.series).collect();
+    names.dedup();
+    names
+}
