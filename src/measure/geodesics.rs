@@ -3,6 +3,7 @@ use glam::DVec3;
 use std::convert::Infallible;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::hint::black_box;
+use std::time::Duration;
 use terrell_geodesic::{
     Accuracy, ByMetric, Curved, DistantCamera, End, Event, FourVector, KerrSchild, KerrSky, Law, Method, Ray,
     Segment, Spacetime, World,
@@ -114,7 +115,7 @@ impl GeodesicSweep {
             (ways[way].follow)();
             Ok::<_, Infallible>(())
         };
-        let Ok(times) = interleaved(ways.len(), self.repeats, run, || done(all));
+        let Ok(times) = interleaved(ways.len(), self.repeats, Duration::MAX, run, || done(all));
         ways.iter().zip(times).map(|(way, times)| way.point(&times)).collect()
     }
 

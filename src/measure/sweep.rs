@@ -71,15 +71,21 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// The worst displacement there is, of edges or of pixels.
-    pub fn displacement(&self) -> f64 {
-        self.edges.map_or(0.0, |edges| edges.worst).max(self.beyond.worst)
-    }
-
     /// Pixels that see another body or another face than rays do.
     pub fn wrong_pixels(&self) -> usize {
         let all = [&self.seen.silhouette, &self.seen.edges];
         all.into_iter().flatten().map(|disagreement| disagreement.pixels).sum()
+    }
+}
+
+impl SweepPoint {
+    /// The worst displacement there is, pixels: of edges, or of pixels beyond what they show, whichever is greater; where
+    /// vertices are in f32, of these alone. None if nothing was drawn.
+    pub fn displacement(&self) -> Option<f64> {
+        let measured = self.measured.as_ref().ok()?;
+        let edges = measured.edges.map_or(0.0, |edges| edges.worst);
+        let of_pictures = self.way.vertices != Vertices::CutF32;
+        Some(if of_pictures { edges.max(measured.beyond.worst) } else { edges })
     }
 }
 
@@ -123,7 +129,7 @@ impl Sweep<'_> {
         let traced = Options { method: Method::Trace, doppler_at: DopplerAt::Pixel, ..options.clone() };
         let many = self.film(&Options { samples: self.reference_samples, ..traced.clone() })?;
         let one = self.film(&Options { samples: 1, ..traced.clone() })?;
-        let corners = Some(self.corners(&traced, &one)?);
+        let corners = Some(Corners::traced(self.scene, self.camera, &traced, &one)?);
         let development = develop(&many)?;
         let references = References {
             lines: Reference { corners, ..one.into() },
@@ -156,7 +162,7 @@ impl Sweep<'_> {
             let index = timed[job];
             self.draw(&self.ways[index], &prepared[index].0, &mut film).map(drop)
         };
-        let times = interleaved(timed.len(), self.repeats, draw, &mut done)?;
+        let times = interleaved(timed.len(), self.repeats, PATIENCE, draw, &mut done)?;
         for (index, times) in timed.iter().zip(times) {
             if let Ok(measured) = &mut points[*index].measured {
                 measured.frame = Some(times);
@@ -170,10 +176,6 @@ impl Sweep<'_> {
         let prepared = options.prepare(self.scene, [self.camera])?;
         render_again(self.scene, self.camera, options, &prepared, &mut film, |_| ())?;
         Ok(film)
-    }
-
-    fn corners(&self, options: &Options, centres: &Film) -> Result<Corners, RenderError> {
-        Corners::traced(self.scene, self.camera, options, centres)
     }
 
     /// One picture; how many triangles were drawn.
@@ -245,6 +247,9 @@ impl Sweep<'_> {
         })
     }
 }
+
+/// What takes longer than that in all is timed less often.
+const PATIENCE: Duration = Duration::from_secs(4);
 
 /// What films are compared with.
 struct References {

@@ -53,24 +53,31 @@ impl Times {
 }
 
 /// Times several jobs, each as often: all of them one after the other, then again, so that what disturbs the machine for a
-/// while disturbs all alike. One round before is not counted. `job` does a job of this number; `done` hears of each.
+/// while disturbs all alike. One round before is not counted. A job that has taken all of `patience` is left alone from
+/// then on, timed at least once. `job` does a job of this number; `done` hears of each run.
 ///
 /// # Errors
 /// The first that a job has.
 pub fn interleaved<E>(
     jobs: usize,
     repeats: u32,
+    patience: Duration,
     mut job: impl FnMut(usize) -> Result<(), E>,
     mut done: impl FnMut(),
 ) -> Result<Vec<Times>, E> {
     let mut runs = vec![Vec::with_capacity(repeats as usize); jobs];
+    let mut spent = vec![Duration::ZERO; jobs];
     for round in 0..=repeats.max(1) {
-        for (number, runs) in runs.iter_mut().enumerate() {
+        for number in 0..jobs {
+            if spent[number] >= patience && !runs[number].is_empty() {
+                continue;
+            }
             let start = Instant::now();
             job(number)?;
             let took = start.elapsed();
-            if round > 0 {
-                runs.push(took);
+            spent[number] += took;
+            if round > 0 || took >= patience {
+                runs[number].push(took);
             }
             done();
         }
@@ -95,19 +102,19 @@ mod tests {
 
     #[test]
     fn jobs_take_turns() {
-        let mut order = Vec::new();
-        let times = interleaved(
-            3,
-            2,
-            |job| {
-                order.push(job);
-                Ok::<_, ()>(())
-            },
-            || (),
-        )
-        .unwrap();
+        let (hour, mut order) = (Duration::from_secs(3600), Vec::new());
+        let note = |job| {
+            order.push(job);
+            Ok::<_, ()>(())
+        };
+        let times = interleaved(3, 2, hour, note, || ()).unwrap();
         assert_eq!(order, [0, 1, 2, 0, 1, 2, 0, 1, 2]);
         assert!(times.len() == 3 && times.iter().all(|t| t.runs() == 2));
-        assert_eq!(interleaved(2, 1, |job| if job == 1 { Err(job) } else { Ok(()) }, || ()), Err(1));
+        let fails = |job| if job == 1 { Err(job) } else { Ok(()) };
+        assert_eq!(interleaved(2, 1, hour, fails, || ()), Err(1));
+        // Without any patience the first run is the only one.
+        let mut count = 0;
+        let times = interleaved(2, 9, Duration::ZERO, |_| Ok::<_, ()>(()), || count += 1).unwrap();
+        assert!(count == 2 && times.iter().all(|t| t.runs() == 1));
     }
 }

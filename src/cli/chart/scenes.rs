@@ -6,9 +6,10 @@ use crate::cli::look::DevelopFlags;
 use crate::cli::progress::progress_bar;
 use crate::cli::summary;
 use serde_json::{Value, json};
-use terrell::figure::{Axis, Figure, Panel, Point, Series, Stroke};
+use terrell::figure::{Axis, Figure, Panel, Point, Series, Stroke, power_of_ten};
+use terrell::light::DopplerAt;
 use terrell::measure::{
-    Displacement, Measured, Sweep, SweepPoint, SweepWay, Vertices, pareto_front, usual_ways,
+    Displacement, Measured, Sweep, SweepPoint, SweepWay, Times, Vertices, pareto_front, usual_ways,
 };
 use terrell::plan::{Method, has_reflections};
 use terrell::relativity::ApparentMap;
@@ -53,6 +54,7 @@ const COLUMNS: &[&str] = &[
     "frame_ms_upper_quartile",
     "frame_ms_least",
     "frame_ms_most",
+    "runs",
     "edge_displacement_px_worst",
     "edge_displacement_px_rms",
     "pixels_beyond_their_face",
@@ -75,12 +77,35 @@ const COLUMNS: &[&str] = &[
     "failed",
 ];
 
-/// What is charted over the time: a panel each.
-const ERRORS: [(&str, &str, fn(&Measured) -> f64); 3] = [
-    ("outlines", "worst displacement, px", Measured::displacement),
-    ("light, along the same rays", "relative RMS of light", |m| m.seen.radiance.relative_rms),
-    ("light, against many samples", "relative RMS of light", |m| m.light.radiance.relative_rms),
+/// What is charted over the time, in a panel of its own.
+struct Charting {
+    what: &'static str,
+    label: &'static str,
+    /// None of what it is not charted of.
+    of: fn(&SweepPoint) -> Option<f64>,
+}
+
+const ERRORS: [Charting; 3] = [
+    Charting { what: "outlines", label: "worst displacement, px", of: displacement },
+    Charting { what: "light, against the same rays", label: "relative RMS of light", of: light_of_same_rays },
+    Charting { what: "light, against many rays a pixel", label: "relative RMS of light", of: light },
 ];
+
+/// Where the Doppler factor is worked out moves no outline.
+fn displacement(point: &SweepPoint) -> Option<f64> {
+    point.displacement().filter(|_| point.way.options.doppler_at == DopplerAt::Pixel)
+}
+
+/// Of pictures that are of one ray a pixel, too.
+fn light_of_same_rays(point: &SweepPoint) -> Option<f64> {
+    let is_one = point.way.options.samples == 1 && point.way.vertices != Vertices::CutF32;
+    point.measured.as_ref().ok().filter(|_| is_one).map(|m| m.seen.radiance.relative_rms)
+}
+
+fn light(point: &SweepPoint) -> Option<f64> {
+    let is_timed = point.way.vertices != Vertices::CutF32;
+    point.measured.as_ref().ok().filter(|_| is_timed).map(|m| m.light.radiance.relative_rms)
+}
 
 /// Below that an error is one of rounding, and drawn as none.
 const ROUNDING: f64 = 1e-6;
@@ -109,14 +134,14 @@ pub fn chart(cases: &[Case], ways: &Ways, develop: &DevelopFlags, quiet: bool) -
         let develop = |film: &_| exposure.of_picture(tone, scene, camera, &ways.options, film);
         let points = sweep.run(&ways.options, develop, || bar.inc(1))?;
         bar.set_position(((number + 1) * timed * (ways.repeats as usize + 1)) as u64);
-        let fronts = ERRORS.map(|(.., error)| front(&points, error));
+        let fronts = ERRORS.each_ref().map(|error| front(&points, error.of));
         for (i, point) in points.iter().enumerate() {
             table.push(row(case, point, [0, 1, 2].map(|e| fronts[e].contains(&i))));
         }
-        let panels = ERRORS.iter().zip(&fronts).map(|((what, label, error), front)| {
-            panel(format!("{}: {what}", case.title()), label, *error, &points, front)
-        });
-        rows.push(panels.collect());
+        let panels = ERRORS.iter().zip(&fronts).map(|(error, front)| panel(error, &points, front));
+        let mut panels: Vec<Panel> = panels.collect();
+        panels[0].title = format!("{}: {}", case.title(), panels[0].title);
+        rows.push(panels);
         said.push_str(&said_of(case, &points, &fronts[0]));
         if has_reflections(scene) {
             notes.push(format!("{}: light of surfaces on each other is left out", scene.name));
@@ -149,7 +174,7 @@ pub fn chart(cases: &[Case], ways: &Ways, develop: &DevelopFlags, quiet: bool) -
 
 fn subtitle(ways: &Ways) -> String {
     format!(
-        "Times of a picture on {} threads, without preparation and encoding: medians of {} interleaved runs and their \
+        "Times of a picture on {} threads, without preparation and encoding: medians of up to {} interleaved runs and their \
          quartiles. Numbers at points: tolerance in pixels; n×: samples a pixel, elsewhere 1. Errors against ray tracing: of \
          outlines against the exact images of edges; of light against one ray through each pixel's centre, and against {} \
          rays a pixel. Filled, on thick grey: nothing measured is faster and more accurate.",
@@ -187,13 +212,15 @@ fn milliseconds(measured: &Measured) -> Option<[f64; 5]> {
     Some([times.median(), low, high, least, most].map(|time| 1e3 * time.as_secs_f64()))
 }
 
+/// Where a point is, with its other times: none if it is not there, or was not timed.
+fn place(point: &SweepPoint, error: fn(&SweepPoint) -> Option<f64>) -> Option<([f64; 5], f64)> {
+    Some((milliseconds(point.measured.as_ref().ok()?)?, drawn(error(point)?)))
+}
+
 /// The points nothing timed is better than.
-fn front(points: &[SweepPoint], error: fn(&Measured) -> f64) -> Vec<usize> {
-    let cost = |point: &SweepPoint| {
-        let measured = point.measured.as_ref().ok()?;
-        Some([milliseconds(measured)?[0], drawn(error(measured))])
-    };
-    pareto_front(&points.iter().map(|point| cost(point).unwrap_or([f64::NAN; 2])).collect::<Vec<_>>())
+fn front(points: &[SweepPoint], error: fn(&SweepPoint) -> Option<f64>) -> Vec<usize> {
+    let cost = |point| place(point, error).map_or([f64::NAN; 2], |([x, ..], y)| [x, y]);
+    pareto_front(&points.iter().map(cost).collect::<Vec<_>>())
 }
 
 fn drawn(error: f64) -> f64 {
@@ -235,12 +262,13 @@ fn row(case: &Case, point: &SweepPoint, is_best: [bool; 3]) -> [Value; COLUMNS.l
         time(2),
         time(3),
         time(4),
+        json!(measured.and_then(|m| m.frame.as_ref()).map(Times::runs)),
         edges(|d| d.worst),
         edges(|d| d.rms),
         number(&|m| Some(m.beyond.measured)),
         number(&|m| Some(m.beyond.worst)),
         number(&|m| Some(m.beyond.rms)),
-        number(&|m| Some(m.displacement())),
+        json!(point.displacement()),
         wrong(&|m| silhouette(m).map(|d| d.pixels)),
         wrong(&|m| silhouette(m).map(|d| d.beyond)),
         wrong(&|m| other_face(m).map(|d| d.pixels)),
@@ -281,21 +309,12 @@ fn fraction(value: f64) -> String {
     if value < 1.0 && inverse.fract() == 0.0 { format!("1/{inverse}") } else { format!("{value}") }
 }
 
-fn panel(
-    title: String,
-    label_of_error: &str,
-    error: fn(&Measured) -> f64,
-    points: &[SweepPoint],
-    front: &[usize],
-) -> Panel {
-    let known = |i: usize| {
-        let measured = points[i].measured.as_ref().ok()?;
-        Some((milliseconds(measured)?, drawn(error(measured))))
-    };
-    let place = |i: usize| known(i).map_or([f64::NAN; 2], |([x, ..], y)| [x, y]);
-    let mut series = vec![front_of(front, place)];
+fn panel(error: &Charting, points: &[SweepPoint], front: &[usize]) -> Panel {
+    let place = |point: &SweepPoint| place(point, error.of);
+    let at = |i: usize| place(&points[i]).map_or([f64::NAN; 2], |([x, ..], y)| [x, y]);
+    let mut series = vec![front_of(front, at)];
     for (i, point) in points.iter().enumerate() {
-        let Some(([x, low, high, ..], y)) = known(i) else { continue };
+        let Some(([x, low, high, ..], y)) = place(point) else { continue };
         let (name, hollow) = (point.way.series, !front.contains(&i));
         let point =
             Point { x, y, x_spread: Some([low, high]), label: label(&point.way), hollow, ..Point::default() };
@@ -304,18 +323,17 @@ fn panel(
             None => series.push(Series { stroke: Stroke::Line, ..Series::points(name, vec![point]) }),
         }
     }
-    let times = (0..points.len()).filter_map(known).map(|([x, ..], _)| x);
+    let times = points.iter().filter_map(place).map(|([x, ..], _)| x);
     let [from, to] = times.fold([f64::INFINITY, 0.0], |[a, b], x| [f64::min(a, x), f64::max(b, x)]);
     let of_f32 = points.iter().filter(|p| p.way.vertices == Vertices::CutF32);
-    for measured in of_f32.filter_map(|p| p.measured.as_ref().ok()) {
-        let y = error(measured);
+    for y in of_f32.filter_map(error.of) {
         let level = Series::line("f32 vertices", [[from, y], [to, y]]);
         series.push(Series { stroke: Stroke::Dashed, ink: Some([90; 3]), ..level });
     }
     Panel {
-        title,
+        title: error.what.into(),
         x: Axis::log("time of a picture, ms"),
-        y: Axis::log(label_of_error).with_zero("<10⁻⁶"),
+        y: Axis::log(error.label).with_zero(format!("<{}", power_of_ten(ROUNDING.log10().round() as i32))),
         series,
         ..Panel::default()
     }
@@ -343,7 +361,7 @@ fn said_of(case: &Case, points: &[SweepPoint], front: &[usize]) -> String {
                 said.push_str(&format!(
                     "{mark} {name:20} {times} {:9.2} | {:8.1e} {:>9} | {:8} | {:9.1e} {:13.1e} {:7.4}\n",
                     1e3 * m.preparation.as_secs_f64(),
-                    m.displacement(),
+                    point.displacement().unwrap_or(0.0),
                     m.edges.map_or_else(|| "–".into(), |edges| format!("{:.1e}", edges.rms)),
                     m.wrong_pixels(),
                     m.seen.radiance.relative_rms,
