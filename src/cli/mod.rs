@@ -38,7 +38,8 @@ const EXAMPLES: &str = "Examples:
   terrell render gate --color doppler -o gate.exr  float channels, Doppler factor included
   terrell transform statue.glb --beta 0.9          its apparent shape, for other programs
   terrell locate --beta 0.9,0,0 1,2,3              where one point is seen
-  terrell compare street                           every method on one scene: differences and times";
+  terrell compare street                           every method on one scene: differences and times
+  terrell chart gate --beta 0.5,0.9                speed against accuracy, drawn";
 
 #[derive(Subcommand)]
 enum Command {

@@ -1,6 +1,7 @@
 //! How far pictures of one scene are apart: silhouettes, surfaces, light, and what an eye sees of it.
 //!
-//! Pure functions of two films. What they are compared with is a [`Reference`]: a film, or what a file has of one.
+//! Of two films, by pure functions; what they are compared with is a [`Reference`]: a film, or what a file has of one. And
+//! what ways to draw a scene ([`Sweep`]) or to follow light ([`GeodesicSweep`]) take for the errors they make.
 
 mod comparison;
 mod deflection;

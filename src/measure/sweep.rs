@@ -293,8 +293,9 @@ impl Corners {
 }
 
 /// The ways a sweep usually compares: exact shading and rays with these samples a pixel; apparent shading at these
-/// tolerances, by every raster; without cuts; with the Doppler factor at vertices; with vertices in f32.
-pub fn usual_ways(options: &Options, tolerances: &[f64], samples: &[u32]) -> Vec<SweepWay> {
+/// tolerances; the other rasters, and the Doppler factor at vertices, at `few` of them; without cuts; with vertices in
+/// f32.
+pub fn usual_ways(options: &Options, tolerances: &[f64], few: &[f64], samples: &[u32]) -> Vec<SweepWay> {
     let way = |series, options, vertices| SweepWay { series, options, vertices };
     let mut ways = Vec::new();
     for (series, method) in [("exact", Method::Exact), ("trace", Method::Trace)] {
@@ -305,12 +306,12 @@ pub fn usual_ways(options: &Options, tolerances: &[f64], samples: &[u32]) -> Vec
     }
     let apparent = Options { method: Method::Apparent, samples: 1, ..options.clone() };
     for (series, raster) in RASTERS {
-        for &tolerance in tolerances {
+        for &tolerance in if raster == Raster::default() { tolerances } else { few } {
             ways.push(way(series, Options { tolerance, raster, ..apparent.clone() }, Vertices::Cut));
         }
     }
     ways.push(way("uncut", apparent.clone(), Vertices::Linear));
-    for &tolerance in tolerances {
+    for &tolerance in few {
         let at_vertices = Options { tolerance, doppler_at: DopplerAt::Vertex, ..apparent.clone() };
         ways.push(way("D at vertices", at_vertices, Vertices::Cut));
     }
@@ -327,7 +328,7 @@ const RASTERS: [(&str, Raster); 2] = [("apparent", Raster::Cpu), ("painter", Ras
 /// The names of all series there are, in their order.
 pub fn series_names() -> Vec<&'static str> {
     let mut names: Vec<&str> =
-        usual_ways(&Options::default(), &[1.0], &[1]).iter().map(|way| way.series).collect();
+        usual_ways(&Options::default(), &[1.0], &[1.0], &[1]).iter().map(|way| way.series).collect();
     names.dedup();
     names
 }

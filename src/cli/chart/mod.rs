@@ -49,7 +49,8 @@ pub struct Chart {
     /// Speeds over c of what moves in a scene, each a row [default: the scene's own]
     #[arg(long, value_name = "β,…", value_delimiter = ',', value_parser = number)]
     beta: Vec<f64>,
-    /// Tolerances of apparent shading, pixels [default: 4,2,1,1/2,1/4,1/8,1/16]
+    /// Tolerances of apparent shading, pixels [default: 4,2,1,1/2,1/4,1/8,1/16; of the painter and Doppler factors at vertices
+    /// every second]
     #[arg(long, value_name = "PX,…", value_delimiter = ',', value_parser = fraction)]
     tolerance: Vec<f64>,
     /// Samples a pixel of exact shading and rays [default: 1,4,16]
@@ -127,14 +128,13 @@ impl Chart {
         let or =
             |given: &Vec<f64>, usual: &[f64]| if given.is_empty() { usual.to_vec() } else { given.clone() };
         let quick = self.quick;
-        let (tolerances, samples): (&[f64], &[u32]) = if quick {
-            (&[1.0, 0.25], &[1])
-        } else {
-            (&[4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625], &[1, 4, 16])
-        };
+        let few: &[f64] = if quick { &[1.0, 0.25] } else { &[4.0, 1.0, 0.25, 0.0625] };
+        let tolerances = if quick { few } else { &[4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625] };
+        let samples: &[u32] = if quick { &[1] } else { &[1, 4, 16] };
         let ways = Ways {
             options: Options { coloring: self.color.coloring(), ..Options::default() },
             tolerances: or(&self.tolerance, tolerances),
+            few_tolerances: or(&self.tolerance, few),
             samples: if self.samples.is_empty() { samples.to_vec() } else { self.samples.clone() },
             reference_samples: if quick { 16 } else { 64 },
             series: self.methods.clone(),

@@ -20,6 +20,8 @@ use terrell::scene::{Camera, Scene};
 pub struct Ways {
     pub options: Options,
     pub tolerances: Vec<f64>,
+    /// Those at which the painter and Doppler factors at vertices are drawn.
+    pub few_tolerances: Vec<f64>,
     pub samples: Vec<u32>,
     pub reference_samples: u32,
     /// Series that are drawn; none of all.
@@ -112,7 +114,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// Measures and draws all ways on all cases.
 pub fn chart(cases: &[Case], ways: &Ways, develop: &DevelopFlags, quiet: bool) -> Result<Charted, Fault> {
-    let all: Vec<SweepWay> = usual_ways(&ways.options, &ways.tolerances, &ways.samples)
+    let all: Vec<SweepWay> = usual_ways(&ways.options, &ways.tolerances, &ways.few_tolerances, &ways.samples)
         .into_iter()
         .filter(|way| ways.series.is_empty() || ways.series.contains(&way.series))
         .collect();
