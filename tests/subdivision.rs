@@ -107,6 +107,35 @@ fn worst_error(rod: Rod, map: &ApparentMap, lens: &Lens, nodes: &[Piece]) -> f64
     worst
 }
 
+/// From γ = 10⁵ on what is seen hardly changes any more, and neither do the cuts, though in the rest frame all that is seen lies
+/// within parts in 10⁹ of one direction.
+#[test]
+fn as_far_as_gamma_goes() {
+    let lens = Lens::new(Projection::Pinhole, 60.0, 1280, 720).unwrap();
+    let (field, tolerance) = (Field::new(&lens), 0.25);
+    let mut random = Random(5);
+    for _ in 0..40 {
+        let mut end = || {
+            let pixel = DVec2::new(1280.0 * random.unit(), 720.0 * random.unit());
+            lens.direction(pixel).unwrap().normalize() * (1.0 + 9.0 * random.unit())
+        };
+        let (seen, direction) = ([end(), end(), end()], random.point(1.0));
+        let pieces = [1e5, 1e7, 1e8, 1e9].map(|gamma| {
+            let map = map(Celerity::from_gamma(gamma, direction).unwrap().vector());
+            let corners = seen.map(|at| map.unsee(at).0);
+            let rod = Rod { from: corners[0], to: corners[1] };
+            let nodes = rod.polyline(&map, &field, tolerance);
+            let error = worst_error(rod, &map, &lens, &nodes);
+            // What f64 leaves of directions in the rest frame, in pixels: 10⁻¹⁶ of 1/γ of a radian.
+            assert!(error < tolerance * 1.001 + 1e-12 * gamma, "γ = {gamma:e}: {error}");
+            let mesh = Mesh::new(&corners, vec![[0, 1, 2]]);
+            let how = Subdivision { tolerance, ..Subdivision::default() };
+            ApparentMesh::new(&mesh, &map, &field, &how).unwrap().triangles.len() as f64
+        });
+        assert!(pieces[..3].iter().all(|n| (n / pieces[0] - 1.0).abs() < 0.3), "{pieces:?}");
+    }
+}
+
 /// Within 4° of a panorama's poles one pixel of sky is more than 16 wide: no promise there.
 fn too_stretched(lens: &Lens, seen: DVec3) -> bool {
     lens.projection() == Projection::Panorama && seen.y.abs() > 0.997 * seen.length()

@@ -46,7 +46,12 @@ impl Arc {
     /// The image of the edge between two rest-frame offsets from the observer; none where the edge points at
     /// the observer (it is seen as a point) or passes through.
     pub fn new(map: &ApparentMap, from: DVec3, to: DVec3) -> Option<Self> {
-        let normal = from.cross(to);
+        let axis = map.axis_rest();
+        // Taken apart along and across the motion: at high speed both point along it to γ digits, and their product's
+        // component there, which γ multiplies, would be lost.
+        let [p, q] = [from, to].map(|v| axis.cross(v.cross(axis)));
+        let along = axis.dot(p.cross(q));
+        let normal = axis.cross(from.dot(axis) * q - to.dot(axis) * p) + along * axis;
         let area = normal.length();
         let (start, end) = (from.length(), to.length());
         // An angle of this few radians cannot be told from rounding noise of its ends, nor the direction of an end
@@ -56,9 +61,8 @@ impl Arc {
             return None;
         }
         let normal = normal / area;
-        let axis = map.axis_rest();
         let (gamma, speed) = (map.gamma(), map.speed());
-        let c = normal.dot(axis);
+        let c = along / area;
         let across = axis - c * normal;
         let m = across.length();
         let curvature = speed * c;

@@ -427,11 +427,18 @@ impl Cutter<'_> {
     /// How far a point of the flat triangle is from where it is seen, over what is allowed there.
     fn excess(&self, corners: &[Corner; 3], offsets: &[DVec3; 3], weights: [f64; 3]) -> f64 {
         let mix = |v: [DVec3; 3]| weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2];
-        let flat: f64 = (0..3).map(|i| weights[i] * offsets[i].length()).sum();
-        let at = mix(*offsets).length();
-        if at == 0.0 {
-            return if flat > 0.0 { f64::INFINITY } else { 0.0 };
+        let middle = mix(*offsets);
+        if middle == DVec3::ZERO {
+            return if offsets.iter().any(|o| *o != DVec3::ZERO) { f64::INFINITY } else { 0.0 };
         }
+        // Distances less what they are along the motion, which is the same for both and at high speed nearly all of them.
+        let axis = self.map.axis_rest() * self.map.axis_rest().dot(middle).signum();
+        let beyond = |v: DVec3| {
+            let (along, length) = (v.dot(axis), v.length());
+            if along > 0.0 { v.cross(axis).length_squared() / (length + along) } else { length - along }
+        };
+        let flat: f64 = (0..3).map(|i| weights[i] * beyond(offsets[i])).sum();
+        let at = beyond(middle);
         let sight = self.map.see(mix(corners.map(|c| c.rest)));
         let n = sight.position / sight.distance;
         let off = self.map.speed() * (flat - at) / (sight.doppler.max(1.0) * sight.distance);
