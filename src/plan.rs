@@ -73,6 +73,11 @@ fn greatest_gamma(scene: &Scene) -> f64 {
     scene.bodies.iter().map(relative).fold(1.0, f64::max)
 }
 
+/// Whether a method follows lines of sight that have too few digits for a scene: shapes are off by pixels then.
+pub fn lacks_digits(scene: &Scene, method: Method) -> bool {
+    method != Method::Apparent && !scene.spacetime.is_curved() && greatest_gamma(scene) > MOST_GAMMA
+}
+
 /// The cheapest method that is right for a scene, and why.
 pub fn cheapest(scene: &Scene, coloring: Coloring) -> (Method, &'static str) {
     if scene.spacetime.is_curved() {

@@ -7,7 +7,7 @@ use crate::light::{DopplerAt, Shading, ShadingError};
 use crate::plan::Method;
 use crate::raster::{Drawable, TooManyToPaint, paint, shade_again};
 use crate::relativity::ApparentMap;
-use crate::scene::{Camera, EyeError, Mesh, Scene, Spacetime, SpacetimeError};
+use crate::scene::{Camera, Eye, EyeError, Mesh, Scene, Spacetime, SpacetimeError};
 use crate::trace::{Look, Paths, Traced, Tracer};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -163,6 +163,19 @@ pub fn around(hole: KerrSchild) -> Curved<KerrSchild> {
     Curved::new(hole).with(Accuracy::new(1e-8, SAGITTA * hole.mass()))
 }
 
+/// As [`around`], for who looks from somewhere: from near the horizon light that comes from outside is followed to less. Its
+/// wave vector is large there and becomes small on the way out, and errors of its beginning do not; they grow like one over
+/// the square of the height. Below a thousandth of the horizon's radius f64 has too few digits, rays drift, and are
+/// flagged.
+pub fn around_seen_from(hole: KerrSchild, eye: &Eye) -> Curved<KerrSchild> {
+    let usual = around(hole);
+    let Eye::Near(frame) = eye else { return usual };
+    let height = hole.radius(frame.event().position().to_array()) / hole.horizon() - 1.0;
+    let part = (10.0 * height * height).clamp(1e-5, 1.0);
+    let accuracy = usual.accuracy();
+    usual.with(Accuracy::new(part * accuracy.tolerance, accuracy.sagitta))
+}
+
 /// ε of chords, in masses: where rays are cheapest; hits are exact whatever it is.
 const SAGITTA: f64 = 0.05;
 
@@ -205,7 +218,7 @@ pub fn render_again(
         let paths = if options.method == Method::Exact { Paths::default() } else { options.paths };
         let look = Look { samples: samples.offsets(), shading, paths };
         let rays = if let (Spacetime::Kerr(hole), Some(eye)) = (&scene.spacetime, scene.eye(camera)?) {
-            let space = around(*hole);
+            let space = around_seen_from(*hole, &eye);
             let step = Mutex::new(step);
             let of = camera.lens.height();
             // A panic of another thread is told by that thread.

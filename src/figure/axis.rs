@@ -22,6 +22,8 @@ pub struct Axis {
     /// On a logarithmic axis: what is written where numbers that are 0 are drawn, apart from all others. If not said they
     /// are left out.
     pub zero: Option<String>,
+    /// Where marks are, and what is written there, if anything is; if there are none, they are at round numbers.
+    pub marks: Vec<(f64, Option<String>)>,
 }
 
 impl Axis {
@@ -38,6 +40,11 @@ impl Axis {
     /// With these ends.
     pub fn from_to(self, from: f64, to: f64) -> Self {
         Self { range: Some([from, to]), ..self }
+    }
+
+    /// With marks at these places.
+    pub fn with_marks(self, marks: impl IntoIterator<Item = (f64, Option<String>)>) -> Self {
+        Self { marks: marks.into_iter().collect(), ..self }
     }
 
     /// With a place for numbers that are 0.
@@ -66,6 +73,8 @@ pub(super) struct Ruler {
     pixels: [f64; 2],
     /// Pixel where 0 is, on a logarithmic axis, and what is written there.
     pub zero: Option<(f64, String)>,
+    /// Those that were asked for.
+    marks: Vec<(f64, Option<String>)>,
 }
 
 /// A mark on an axis.
@@ -109,6 +118,7 @@ impl Ruler {
             ends,
             pixels,
             zero: zero.map(|text| (from + 0.4 * ZERO_BAND * toward, text)),
+            marks: axis.marks.clone(),
         }
     }
 
@@ -132,6 +142,12 @@ impl Ruler {
 
     /// The marks, in order.
     pub fn ticks(&self) -> Vec<Tick> {
+        if !self.marks.is_empty() {
+            let tick = |(value, text): &(f64, Option<String>)| {
+                Some(Tick { at: self.at(*value)?, text: text.clone() })
+            };
+            return self.marks.iter().filter_map(tick).collect();
+        }
         match self.scale {
             Scale::Linear => self.even_ticks(),
             Scale::Log => self.log_ticks(),
@@ -229,6 +245,13 @@ mod tests {
             ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
         );
         assert_eq!(written(&Axis::linear("").from_to(-90.0, 90.0), &[]), ["−50", "0", "50"]);
+    }
+
+    #[test]
+    fn marks_are_where_they_are_asked_for() {
+        let axis = Axis::linear("").from_to(0.0, 2.0).with_marks([(0.5, Some("here".into())), (1.5, None)]);
+        let ticks = Ruler::new(&axis, std::iter::empty(), [0.0, 200.0]).ticks();
+        assert_eq!(ticks, [Tick { at: 50.0, text: Some("here".into()) }, Tick { at: 150.0, text: None }]);
     }
 
     #[test]

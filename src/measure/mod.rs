@@ -11,6 +11,7 @@ mod geodesics;
 mod marks;
 mod pareto;
 mod reference;
+pub mod stability;
 mod sweep;
 mod timing;
 

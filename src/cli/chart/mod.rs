@@ -1,6 +1,7 @@
 mod files;
 mod geodesics;
 mod scenes;
+mod stability;
 mod table;
 
 use super::Fault;
@@ -34,7 +35,8 @@ use terrell::scene::{Choice, Scene, Speed, builtin_scenes};
   terrell chart gate --beta 0.5,0.9,0.99 -o gate.svg
   terrell chart statue.glb --beta 0.9 --size 320x180,1280x720 -o statue
   terrell chart cube --methods exact,apparent --tolerance 1,1/4 --repeats 31
-  terrell chart --geodesics -o docs/images/geodesics    integrators past black holes")]
+  terrell chart --geodesics -o docs/images/geodesics    integrators past black holes
+  terrell chart --stability -o docs/images/stability    where each method fails")]
 pub struct Chart {
     /// Scenes: names, .toml files or meshes [default: those that ship in which no surface is lit]
     #[arg(value_name = "SCENE", conflicts_with = "geodesics")]
@@ -42,8 +44,15 @@ pub struct Chart {
     /// Light past black holes instead: integrators, tolerances, chords, against the closed form
     #[arg(long, conflicts_with_all = ["beta", "tolerance", "size", "samples", "methods", "time", "when"])]
     geodesics: bool,
-    /// A .svg, .png, .csv or .json file; without ending all four, in a folder chart.svg and so on [default: chart, or
-    /// geodesics]
+    /// Where each method fails instead: maps of measured errors, and what is done there; six pictures
+    #[arg(
+        long,
+        conflicts_with_all =
+            ["scenes", "geodesics", "beta", "tolerance", "size", "samples", "methods", "repeats", "time", "when"]
+    )]
+    stability: bool,
+    /// A .svg, .png, .csv or .json file; without ending all four, in a folder chart.svg and so on [default: chart,
+    /// geodesics or stability]
     #[arg(short, long, value_name = "PATH")]
     output: Option<PathBuf>,
     /// Speeds over c of what moves in a scene, each a row [default: the scene's own]
@@ -92,6 +101,9 @@ struct Charted {
 
 impl Chart {
     pub fn run(self) -> Result<(), Fault> {
+        if self.stability {
+            return self.stability();
+        }
         let name = if self.geodesics { "geodesics" } else { "chart" };
         let files = Files::of(&self.output.clone().unwrap_or_else(|| name.into()), name)?;
         let cases = if self.geodesics { Vec::new() } else { self.cases()? };
