@@ -162,6 +162,7 @@ impl Animate {
         let mut options = options.clone();
         self.look.choose(&mut options, &scene)?;
         scene.notes.extend(summary::light_notes(&scene, &options));
+        scene.notes.extend(summary::digit_note(&scene, options.method));
         scene.notes.extend(scene.horizon_notes());
         let animation = self.animation(&scene)?;
         if scene.spacetime.is_curved() {

@@ -63,6 +63,7 @@ impl Render {
         let mut progress = Progress::new(self.report.quiet);
         let coloring = options.coloring;
         scene.notes.extend(summary::light_notes(&scene, &options));
+        scene.notes.extend(summary::digit_note(&scene, options.method));
         scene.notes.extend(scene.horizon_notes());
         let mut film = Film::new(0, 0);
         let prepared = options.prepare(&scene, [&camera])?;

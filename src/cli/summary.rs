@@ -5,7 +5,7 @@ use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::geodesic::{Event, Sense, Tetrad, World};
 use terrell::light::{DopplerAt, Shading, TableInfo, has_shadows};
-use terrell::plan::{Method, has_reflections};
+use terrell::plan::{Method, has_reflections, is_of_polygons, lacks_digits};
 use terrell::relativity::ApparentMap;
 use terrell::render::{Options, Raster, Report};
 use terrell::scene::{Body, Camera, Light, Scene, Spacetime, Stance};
@@ -203,6 +203,17 @@ pub fn ray_notes(count: &Count) -> Vec<String> {
         ));
     }
     notes
+}
+
+/// Whether a scene is too fast for the method it is drawn by, for people to read.
+pub fn digit_note(scene: &Scene, method: Method) -> Option<String> {
+    let remedy = if is_of_polygons(scene) { "" } else { ", but not the shadows, mirrors and skies" };
+    let note = || {
+        format!(
+            "γ is above 10⁵, where lines of sight lose digits: outlines are off, by pixels from some 10⁶ on; --method apparent keeps them{remedy}"
+        )
+    };
+    lacks_digits(scene, method).then(note)
 }
 
 /// What is not drawn of a scene's light, for people to read.

@@ -5,7 +5,7 @@ use crate::cli::Fault;
 use crate::cli::progress::progress_bar;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use terrell::figure::{Axis, Figure, HeatMap, Panel, Scale, Series, Stroke, power_of_ten};
+use terrell::figure::{Axis, Figure, HeatMap, Panel, Scale, Series, Stroke};
 use terrell::measure::stability::{self, Map, Planner, Resolution, SHEETS, Sheet};
 
 const COLUMNS: &[&str] = &[
@@ -171,12 +171,16 @@ fn figure(sheet: &Sheet, maps: &[Map]) -> Figure {
     let (across, panel_size, colors) = look(sheet.name);
     let panels: Vec<Panel> =
         maps.iter().enumerate().map(|(i, map)| panel(map, i % across == 0, colors)).collect();
-    let hatched = maps
-        .first()
-        .map_or(String::new(), |map| format!("Hatched: the error exceeds {}. ", plain(map.tolerance)));
-    let subtitle = format!(
-        "{hatched}Framed in green: what is done there if nothing else is asked for; in yellow, dashed: only where nothing else can be done, and a note says that it fails."
-    );
+    let hatched =
+        maps.first().map_or(String::new(), |map| format!("Hatched: the error exceeds {}. ", map.limit()));
+    let warns = maps.iter().any(|map| map.planner.contains(&Planner::Warns));
+    let warned = if warns {
+        " In yellow, dashed: only where nothing else can be done, and a note says that it fails."
+    } else {
+        ""
+    };
+    let subtitle =
+        format!("{hatched}Framed in green: what is done there if nothing else is asked for.{warned}");
     Figure {
         title: sheet.title.into(),
         subtitle: vec![subtitle],
@@ -216,27 +220,11 @@ fn panel(map: &Map, first: bool, range: [f64; 2]) -> Panel {
 /// Marks in the middles of cells.
 fn marks(axis: &stability::Axis, is_written: bool) -> Vec<(f64, Option<String>)> {
     let is_decade = |v: f64| v > 0.0 && (v.log10() - v.log10().round()).abs() < 1e-9;
-    let all = axis.words.is_some() || axis.len() <= 11 || axis.values.iter().any(|v| *v <= 0.0);
+    let all = axis.words.is_some() || axis.len() <= 13 || axis.values.iter().any(|v| *v <= 0.0);
     let mark = |i: usize| {
-        let text = match &axis.words {
-            Some(words) => words[i].to_owned(),
-            None => plain(axis.values[i]),
-        };
-        (i as f64 + 0.5, (is_written && (all || is_decade(axis.values[i]))).then_some(text))
+        (i as f64 + 0.5, (is_written && (all || is_decade(axis.values[i]))).then(|| axis.label(i)))
     };
     (0..axis.len()).map(mark).collect()
-}
-
-/// "0.25", "10⁻⁸", "4·10⁻⁴".
-fn plain(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || (0.01..1e3).contains(&size) {
-        return format!("{value}").replace('-', "−");
-    }
-    let exponent = size.log10().floor() as i32;
-    let digits = value / 10f64.powi(exponent);
-    let power = power_of_ten(exponent);
-    if (digits - 1.0).abs() < 1e-9 { power } else { format!("{}·{power}", (10.0 * digits).round() / 10.0) }
 }
 
 /// What parts lines of one series.

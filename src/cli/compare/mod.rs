@@ -22,7 +22,7 @@ use terrell::color::Coloring;
 use terrell::film::Film;
 use terrell::measure::{Comparison, Corners, Faces, Known, Perceived, Reference, flip};
 use terrell::picture::{self, Pending};
-use terrell::plan::{has_reflections, is_of_polygons};
+use terrell::plan::{Method, has_reflections, is_of_polygons};
 use terrell::render::Options;
 use terrell::scene::{Camera, Scene, builtin_scenes};
 use terrell::tone::Development;
@@ -233,6 +233,8 @@ impl Compare {
             summary::shadow_note(scene, coloring)
                 .map(|note| format!("{note} but by {only}: that is in the others' light")),
         );
+        // What the others are compared with, if nothing is given.
+        scene.notes.extend(summary::digit_note(scene, Method::Trace));
         let mut ways: Vec<&'static Way> = WAYS
             .iter()
             .filter(|way| self.methods.is_empty() || self.methods.iter().any(|m| m.name == way.name))

@@ -1,5 +1,6 @@
 //! Rays around black holes, by how accurately they are integrated.
 
+use super::map::number;
 use super::{Axis, Map, Planner, QUARTER_PIXEL, Resolution};
 use crate::measure::schwarzschild_deflection;
 use crate::render::{around, around_seen_from};
@@ -203,7 +204,7 @@ fn fast_spin(below: f64) -> Vec<Probe> {
 
 const BEYOND: [f64; 13] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0, 10.0, 100.0];
 const FROM_AXIS: [f64; 11] = [1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0];
-const ABOVE: [f64; 11] = [2e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0];
+const ABOVE: [f64; 13] = [2e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0, 3.0];
 const BELOW: [f64; 11] = [0.0, 1e-15, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2, 0.1, 1.0];
 
 pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
@@ -227,28 +228,28 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     [
         (
             "impact",
-            "Light past a resting hole",
+            "Where light past a resting hole comes from",
             Axis::of("impact parameter beyond the critical one, M", beyond.clone()),
             impact(&beyond, &tolerances),
             everywhere(&beyond),
         ),
         (
             "axis",
-            "Rays near the axis, a = 0.9 M",
+            "Where rays near the axis come from, a = 0.9 M",
             Axis::of("distance from the axis, rad or M", axis.clone()),
             of(&axis, near_axis),
             everywhere(&axis),
         ),
         (
             "horizon",
-            "Looking out near the horizon, a = 0.9 M",
+            "Looking out from near the horizon, a = 0.9 M",
             Axis::of("height above the horizon, of its radius", above.clone()),
             of(&above, near_horizon),
             looking_out,
         ),
         (
             "spin",
-            "Light past a fast hole",
+            "Where light past a fast hole comes from",
             Axis::of("1 − a/M", below.clone()),
             of(&below, fast_spin),
             everywhere(&below),
@@ -275,7 +276,7 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
             title: title.to_owned(),
             x,
             y: Axis::of("error allowed in a step", tolerances.clone()),
-            quantity: "error of where light comes from, rad, over the conditioning",
+            quantity: "error, rad, over the conditioning",
             tolerance: QUARTER_PIXEL,
             errors: cells.iter().map(|(off, _)| off.error).collect(),
             conditioning: Some(cells.iter().map(|(_, conditioning)| *conditioning).collect()),
@@ -291,17 +292,17 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
 fn words(map: &Map, usual: f64) -> String {
     let rows = (0..map.errors.len()).filter(|&c| map.fails(c)).map(|c| map.y.values[c / map.x.len()]);
     let what = match rows.reduce(f64::min) {
-        Some(tolerance) => format!("Fails in places from {tolerance:e} a step on"),
+        Some(tolerance) => format!("Fails in places from {} a step on", number(tolerance)),
         None => "Fails nowhere".to_owned(),
     };
     let worst = map.worst(&[Planner::Enters]).unwrap_or(f64::NAN);
     let made = match map.name.as_str() {
-        "horizon" => format!("Pictures are made with {usual:e}, and less near the horizon"),
-        _ => format!("Pictures are made with {usual:e}"),
+        "horizon" => format!("Pictures are made with {}, and less near the horizon", number(usual)),
+        _ => format!("Pictures are made with {}", number(usual)),
     };
     let warned = match map.planner.contains(&Planner::Warns) {
         true => "; nearer than that rays are known to drift, and are flagged in the picture",
         false => "",
     };
-    format!("{what}. {made}: within {worst:.0e}{warned}.")
+    format!("{what}. {made}: within {}{warned}.", number(worst))
 }

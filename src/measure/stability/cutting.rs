@@ -75,7 +75,7 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
                 "cut",
                 "cut to ¼ px",
                 Planner::Enters,
-                "Edges stay within the tolerance asked for, near and far; taken for γ above 1e5, or where cutting is asked for.",
+                "Edges stay within the tolerance asked for, near and far; taken for γ above 10⁵, or where cutting is asked for.",
             ),
         ]
         .into_iter()

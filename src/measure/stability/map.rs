@@ -1,3 +1,5 @@
+use crate::drawing::number::{significant, superscript};
+
 /// One side of a [`Map`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
@@ -39,13 +41,18 @@ impl Axis {
     }
 }
 
-/// A number as short as it can be: "1e-9", "0.25", "3200".
-fn number(value: f64) -> String {
+/// A number of two digits as people write it: "0.25", "10⁻⁸", "3.2·10⁵".
+pub(super) fn number(value: f64) -> String {
     let size = value.abs();
-    if size != 0.0 && !(1e-3..1e5).contains(&size) {
-        format!("{value:.1e}").replace(".0e", "e")
-    } else {
-        format!("{value}")
+    if size == 0.0 || (0.01..1e3).contains(&size) {
+        return significant(value, 4);
+    }
+    // In steps of two digits there is no 9.96 that becomes 10.0.
+    let rounded: f64 = format!("{value:.1e}").parse().unwrap_or(value);
+    let exponent = rounded.abs().log10().floor() as i32;
+    match significant(rounded / 10f64.powi(exponent), 2).as_str() {
+        "1" => format!("10{}", superscript(exponent)),
+        digits => format!("{digits}·10{}", superscript(exponent)),
     }
 }
 
@@ -93,6 +100,11 @@ impl Map {
         row * self.x.len() + column
     }
 
+    /// The tolerance as it is written.
+    pub fn limit(&self) -> String {
+        number(self.tolerance)
+    }
+
     /// Whether a cell fails.
     pub fn fails(&self, cell: usize) -> bool {
         let error = self.errors[cell];
@@ -111,12 +123,12 @@ impl Map {
         let told = |cell: usize| {
             let (column, row) = (cell % self.x.len(), cell / self.x.len());
             format!(
-                "{} {}, {} {}: {:e}",
+                "{} {}, {} {}: {}",
                 self.x.name,
                 self.x.label(column),
                 self.y.name,
                 self.y.label(row),
-                self.errors[cell]
+                number(self.errors[cell])
             )
         };
         cells.map(told).collect()

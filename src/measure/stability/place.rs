@@ -1,5 +1,6 @@
 //! Eq. 1 and 3 as they are printed, and as they are computed here, in f32 and f64.
 
+use super::map::number;
 use super::wide::{Vector, cross, dot};
 use super::{Axis, Map, Planner, QUARTER_PIXEL, Resolution, conditioning, seen};
 use crate::relativity::{ApparentMap, Lane, MapLane, Motion, Points, PointsMut};
@@ -224,27 +225,30 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
                 planner: vec![planner; cells.len()],
                 words: String::new(),
             };
-            let words = words(&map, how);
+            let words = words(&map, &places, how);
             maps.push(Map { words, ..map });
         }
     }
     maps
 }
 
-fn words(map: &Map, how: &str) -> String {
+fn words(map: &Map, places: &[(&str, Place)], how: &str) -> String {
     let worst = map.errors.iter().copied().fold(0.0, f64::max);
-    let failing = (0..map.errors.len())
-        .filter(|&c| map.fails(c))
-        .map(|c| map.x.values[c % map.x.len()])
-        .reduce(f64::min);
-    let what = match failing {
-        Some(gamma) => format!("Fails from γ = {gamma} on"),
-        None => format!("Nowhere off by more than {worst:.1e}"),
+    let failing = |is_inside: bool| {
+        let is_of = |cell: &usize| matches!(places[cell / map.x.len()].1, Place::Inside(_)) == is_inside;
+        let cells = (0..map.errors.len()).filter(|cell| map.fails(*cell)).filter(is_of);
+        cells.map(|cell| map.x.values[cell % map.x.len()]).reduce(f64::min)
+    };
+    let what = match (failing(false), failing(true)) {
+        (None, None) => format!("Nowhere off by more than {}", number(worst)),
+        (None, Some(_)) => "Fails right before the camera".to_owned(),
+        (Some(gamma), None) => format!("Fails from γ = {} on", number(gamma)),
+        (Some(gamma), Some(_)) => format!("Fails from γ = {} on, and right before the camera", number(gamma)),
     };
     let done = match map.planner[0] {
-        Planner::Enters => "all that moves vertices uses it",
+        Planner::Enters => "everything moved to where it is seen goes through it",
         _ if how.starts_with("as printed") => {
-            "never used: its differences of large numbers cancel, as γ² for what recedes"
+            "never used: differences of large numbers cancel in it, by γ² for what recedes"
         }
         _ => "for programs whose vertices are f32; pictures are made in f64",
     };

@@ -1,5 +1,6 @@
 //! Lines of sight through triangles at rest, and triangles moved to where they are seen, at high γ.
 
+use super::map::number;
 use super::outline::Outline;
 use super::place::GAMMAS;
 use super::{Axis, Map, Planner, Resolution};
@@ -151,10 +152,11 @@ fn measured(way: usize, [gamma, degrees, size]: [f64; 3], resolution: Resolution
 pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     let gammas = resolution.some(&GAMMAS, 7);
     let (angles, sizes) = (resolution.some(&ANGLES, 4), resolution.some(&SIZES, 3));
+    let most = number(MOST_GAMMA);
     let lit = format!(
-        "above γ = {MOST_GAMMA:e} the planner cuts shapes; what needs rays for shadows or mirrors is drawn all the same, and a note says that it is off"
+        "above γ = {most} the planner cuts shapes; what needs rays for shadows or mirrors is drawn all the same, and a note says that it is off"
     );
-    let cut = format!("taken by itself above γ = {MOST_GAMMA:e}");
+    let cut = format!("taken by itself above γ = {most}, where lines of sight have lost their digits");
     let angle = Axis::of("line of sight to the motion, degrees", angles.clone());
     let size = Axis::of("size of the triangle, px", sizes.clone());
     [
@@ -192,7 +194,7 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
         };
         let failing = (0..map.errors.len()).filter(|&cell| map.fails(cell));
         let what = match failing.map(|cell| gammas[cell % gammas.len()]).reduce(f64::min) {
-            Some(gamma) => format!("Fails from γ = {gamma:e} on"),
+            Some(gamma) => format!("Fails from γ = {} on", number(gamma)),
             None => "Fails nowhere".to_owned(),
         };
         Map { words: format!("{what}; {done}."), ..map }

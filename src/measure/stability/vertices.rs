@@ -77,9 +77,13 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
         (
             "uncut",
             "the mesh's own triangles",
-            "Fails where a triangle looks larger than some degrees and is fast.",
+            "Fails where triangles look larger than some degrees and are fast: D⁴ is no straight line.",
         ),
-        ("cut", "cut to ¼ px", "Cutting helps little: edges may be straight where light changes."),
+        (
+            "cut",
+            "cut to ¼ px",
+            "Cutting helps, but is for outlines: it stops where those are straight, whatever the light does.",
+        ),
     ]
     .into_iter()
     .enumerate()
