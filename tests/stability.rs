@@ -1,21 +1,28 @@
 //! Where ways to compute fail, and that the planner does not go there.
 
 mod common;
+#[path = "common/program.rs"]
+mod program;
 
 use common::{points, vec3};
+use glam::DVec3;
+use program::{bad, good};
 use serde_json::Value;
-use terrell::geodesic::{Celerity, Event, Real};
+use terrell::color::Coloring;
+use terrell::geodesic::{Celerity, Event, Real, Wide};
 use terrell::measure::stability::{Map, Planner, Resolution, SHEETS, conditioning, seen};
+use terrell::plan::{MOST_GAMMA, Method, cheapest, lacks_digits};
 use terrell::relativity::Motion;
+use terrell::scene::{Speed, builtin_scene};
 
+/// A sheet's maps, coarsely, none of which fails where the planner goes: that is what they are for.
 fn sheet(name: &str) -> Vec<Map> {
     let sheet = SHEETS.iter().find(|sheet| sheet.name == name).unwrap();
     let maps = sheet.maps(Resolution::Quick);
     for map in &maps {
         let cells = map.x.len() * map.y.len();
         assert!(map.errors.len() == cells && map.planner.len() == cells, "{}", map.name);
-        assert!(!map.words.is_empty());
-        // What the whole is about.
+        assert!(map.sheet == name && !map.words.is_empty(), "{}", map.name);
         assert_eq!(map.faults(), Vec::<String>::new(), "{}", map.name);
     }
     maps
@@ -25,34 +32,179 @@ fn map<'a>(maps: &'a [Map], name: &str) -> &'a Map {
     maps.iter().find(|map| map.name == name).unwrap_or_else(|| panic!("{name}"))
 }
 
+/// What errors are measured against has the digits of 60-digit arithmetic that f64 can hold, of inputs as they are.
 #[test]
-#[ignore = "prints all, for people"]
-fn print() {
-    for sheet in SHEETS {
-        let start = std::time::Instant::now();
-        let maps =
-            sheet.maps(if std::env::var("QUICK").is_ok() { Resolution::Quick } else { Resolution::Usual });
-        println!("=== {} {:.1} s", sheet.name, start.elapsed().as_secs_f64());
-        for map in maps {
-            println!("{} | {} | {}\n{}", map.name, map.title, map.quantity, map.words);
-            let columns: Vec<String> = (0..map.x.len()).map(|i| format!("{:>8}", map.x.label(i))).collect();
-            println!("{:>30} {}", map.x.name, columns.join(""));
-            for row in (0..map.y.len()).rev() {
-                let cells: Vec<String> = (0..map.x.len())
-                    .map(|c| {
-                        let cell = map.cell(c, row);
-                        let mark = match (map.planner[cell], map.fails(cell)) {
-                            (Planner::Enters, true) => "!",
-                            (Planner::Enters, _) => "*",
-                            (Planner::Warns, _) => "w",
-                            _ => " ",
-                        };
-                        format!("{:>7.0e}{mark}", map.errors[cell])
-                    })
-                    .collect();
-                println!("{:>30} {}", map.y.label(row), cells.join(""));
+fn the_reference_is_that_of_sixty_digits() {
+    for row in points() {
+        let event = |key: &str| {
+            let v: Vec<f64> = row[key].as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).collect();
+            Event::new(v[0], v[1], v[2], v[3])
+        };
+        let motion = Motion { celerity: Celerity::new(vec3(&row["u"])).unwrap(), origin: event("A") };
+        let (observer, x_rest) = (event("O"), vec3(&row["x_rest"]));
+        let found = seen(&motion, observer, x_rest);
+        let (r, doppler) = (row["r"].as_f64().unwrap(), row["D"].as_f64().unwrap());
+        let position = DVec3::from_array(found.position.map(Wide::value));
+        // Rounding of what both are written down as: half a unit of each component.
+        assert!((position - vec3(&row["apparent"])).length() <= 2.0 * f64::EPSILON * r, "{}", row["kind"]);
+        assert!((found.distance.value() / r - 1.0).abs() <= f64::EPSILON);
+        assert!((found.doppler.value() / doppler - 1.0).abs() <= f64::EPSILON);
+        // It is a quotient of small changes, and the other one takes the worst of both signs.
+        let (own, other) = (conditioning(&motion, observer, x_rest), row["condition"].as_f64().unwrap());
+        assert!((own / other - 1.0).abs() < 0.01, "{}: {own} {other}", row["kind"]);
+    }
+}
+
+#[test]
+fn formulas_fail_as_they_are_printed_and_the_map_does_not() {
+    let maps = sheet("place");
+    assert_eq!(maps.len(), 12);
+    for quantity in ["direction", "distance", "doppler"] {
+        let of = |way: &str| map(&maps, &format!("{quantity}_{way}"));
+        assert!(of("printed_f32").failures() > of("printed_f64").failures());
+        assert!(of("printed_f64").failures() > 0 && of("map_f64").failures() == 0);
+        // What tests/apparent_map.rs promises, everywhere.
+        for (way, promise) in [("map_f64", 5e-16), ("map_f32", 3e-7)] {
+            let map = of(way);
+            let promise = if quantity == "doppler" { 2.0 * promise } else { promise };
+            for (cell, error) in map.errors.iter().enumerate() {
+                let conditioning = map.conditioning.as_ref().unwrap()[cell];
+                assert!(*error <= promise * conditioning, "{} {cell}: {error:e} {conditioning}", map.name);
             }
-            println!("faults: {:?}", map.faults());
         }
     }
+}
+
+#[test]
+fn lines_of_sight_fail_where_shapes_are_cut_instead_or_a_note_is_made() {
+    let maps = sheet("sight");
+    for name in ["exact", "trace", "exact_size", "trace_size"] {
+        let map = map(&maps, name);
+        assert!(map.failures() > 0, "{name}");
+        for cell in 0..map.errors.len() {
+            let fast = map.x.values[cell % map.x.len()] > MOST_GAMMA;
+            assert_eq!(map.planner[cell], if fast { Planner::Warns } else { Planner::Enters });
+        }
+    }
+    for name in ["cut", "cut_size"] {
+        assert_eq!(map(&maps, name).failures(), 0, "{name}");
+        assert!(map(&maps, name).planner.contains(&Planner::Enters));
+    }
+}
+
+#[test]
+fn what_is_too_fast_is_told() {
+    for (name, gamma, told) in [("cube", 2e5, false), ("shadow", 9e4, false), ("shadow", 2e5, true)] {
+        let mut scene = builtin_scene(name).unwrap().scene();
+        scene.set_speed(Speed::Along(gamma)).unwrap();
+        let (method, _) = cheapest(&scene, Coloring::Spectral);
+        assert_eq!(lacks_digits(&scene, method), told, "{name} {gamma}");
+        assert!(!lacks_digits(&scene, Method::Apparent));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let words = ["render", "shadow", "--celerity", "2e5", "--size", "32x18", "--json", "s.json"];
+    let said = good(&words, at);
+    assert!(said.contains("lines of sight lose digits") && said.contains("--method apparent"), "{said}");
+    let json: Value = serde_json::from_slice(&std::fs::read(at.join("s.json")).unwrap()).unwrap();
+    assert!(
+        json["notes"].as_array().unwrap().iter().any(|note| note.as_str().unwrap().contains("γ is above"))
+    );
+    let said = good(&["render", "cube", "--celerity", "2e5", "--size", "32x18"], at);
+    assert!(!said.contains("lose digits: outlines"), "{said}");
+    let said = good(&["render", "cube", "--celerity", "2e5", "--size", "32x18", "--method", "exact"], at);
+    assert!(said.contains("lose digits: outlines"), "{said}");
+}
+
+#[test]
+fn large_triangles_are_cut() {
+    let maps = sheet("cutting");
+    for beta in ["0.9", "0.999"] {
+        assert!(map(&maps, &format!("uncut_{beta}")).failures() > 0);
+        assert_eq!(map(&maps, &format!("cut_{beta}")).failures(), 0);
+    }
+}
+
+#[test]
+fn the_painter_fails_where_bodies_cross_and_is_not_chosen() {
+    let maps = sheet("painter");
+    let painter = map(&maps, "painter");
+    assert!(painter.planner.iter().all(|p| *p == Planner::Avoids));
+    for cell in 0..painter.errors.len() {
+        let crosses = painter.x.values[cell % painter.x.len()] > 0.0;
+        if painter.fails(cell) {
+            assert!(crosses, "{cell}");
+        }
+    }
+    assert!(painter.failures() > 0);
+    assert_eq!(map(&maps, "z_buffer").failures(), 0);
+}
+
+#[test]
+fn doppler_factors_of_vertices_fail_for_large_triangles_and_are_not_chosen() {
+    let maps = sheet("vertices");
+    for name in ["uncut", "cut"] {
+        let map = map(&maps, name);
+        assert!(map.failures() > 0 && map.planner.iter().all(|p| *p == Planner::Avoids), "{name}");
+    }
+    let pixels = map(&maps, "pixels");
+    // f32 light, of the fourth power.
+    assert!(pixels.worst(&[Planner::Enters]).unwrap() < 2e-6);
+}
+
+#[test]
+fn curved_light_is_followed_accurately_enough() {
+    for map in sheet("curved") {
+        let worst = map.worst(&[Planner::Enters]).unwrap();
+        // Ten times what is allowed in a step, over the conditioning.
+        assert!(worst < 1e-7, "{}: {worst:e}", map.name);
+        assert_eq!(map.planner.contains(&Planner::Warns), map.name == "horizon", "{}", map.name);
+    }
+}
+
+/// Who hovers a hundredth of its radius above the horizon sees the sky in a small cone overhead, and no ray of it is lost;
+/// a millionth above, f64 has no digits for them, and pixels say so.
+#[test]
+fn the_sky_from_just_outside_the_horizon() {
+    let folder = tempfile::tempdir().unwrap();
+    let lost = |height: f64| {
+        let radius = 2.0 * (1.0 + height);
+        let scene = format!(
+            "[spacetime]\nmetric = \"schwarzschild\"\n[sky]\ntexture = \"stars\"\n[camera]\nposition = [{radius}, 0, 0]\nforward = [1, 0, 0]\nfov_deg = 20\nsize = [24, 16]\n"
+        );
+        std::fs::write(folder.path().join("s.toml"), scene).unwrap();
+        good(&["render", "s.toml", "--json", "s.json", "--color", "geometry"], folder.path());
+        let json: Value =
+            serde_json::from_slice(&std::fs::read(folder.path().join("s.json")).unwrap()).unwrap();
+        let rays = &json["rays"];
+        let failed = rays["failed"].as_object().unwrap().values().map(|n| n.as_u64().unwrap()).sum::<u64>();
+        (failed, rays["from_sky"].as_u64().unwrap())
+    };
+    for height in [0.3, 0.1, 0.03, 0.01, 0.002] {
+        let (failed, sky) = lost(height);
+        assert!(failed == 0 && sky > 10, "{height}: {failed} {sky}");
+    }
+    assert!(lost(5e-6).0 > 10);
+}
+
+#[test]
+fn the_chart_is_drawn_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let said = good(&["chart", "--stability", "--quick", "-o", "maps/s"], at);
+    assert!(said.contains("cells fail") && !said.contains("note:"), "{said}");
+    for sheet in SHEETS {
+        let svg = std::fs::read_to_string(at.join(format!("maps/s_{}.svg", sheet.name))).unwrap();
+        assert!(svg.contains(sheet.title) && svg.contains("taken"), "{}", sheet.name);
+        assert!(program::pixels(at.join(format!("maps/s_{}.png", sheet.name))).width() > 500);
+    }
+    let json: Value = serde_json::from_slice(&std::fs::read(at.join("maps/s.json")).unwrap()).unwrap();
+    let maps = json["maps"].as_array().unwrap();
+    assert!(maps.len() > 20);
+    assert!(maps.iter().all(|map| map["failing_cells_the_planner_enters"].as_array().unwrap().is_empty()));
+    let csv = std::fs::read_to_string(at.join("maps/s.csv")).unwrap();
+    let size = |axis: &Value| axis["values"].as_array().unwrap().len();
+    assert_eq!(csv.lines().count(), 1 + maps.iter().map(|m| size(&m["x"]) * size(&m["y"])).sum::<usize>());
+    assert!(bad(&["chart", "--stability", "-o", "s.pdf"], at).contains(".pdf"));
+    assert!(bad(&["chart", "--stability", "--geodesics"], at).contains("--geodesics"));
 }

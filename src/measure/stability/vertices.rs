@@ -1,5 +1,6 @@
 //! Doppler factors worked out at vertices and interpolated between, against those of every pixel.
 
+use super::wide::dot;
 use super::{Axis, Map, Planner, Resolution};
 use crate::apparent::{ApparentMesh, Field, Subdivision};
 use crate::color::Coloring;
@@ -8,20 +9,28 @@ use crate::light::{DopplerAt, Shading};
 use crate::raster::{Drawable, shade};
 use crate::relativity::{ApparentMap, Motion};
 use crate::render::Options;
-use crate::scene::{Aim, Body, Mesh, Scene, View};
+use crate::scene::{Aim, Body, Mesh, Paint, Scene, View};
+use crate::spectrum::luminance;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use std::iter::zip;
-use terrell_geodesic::{Celerity, Event};
+use terrell_geodesic::{Celerity, Event, Real, Wide};
 
 /// How large the triangle looks, degrees.
 const ANGLES: [f64; 12] = [0.1, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0, 15.0, 25.0, 40.0, 60.0, 80.0];
 const BETAS: [f64; 11] = [0.01, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99, 0.999];
 
+/// D in a direction, of 32 digits, rounded: 1/(γ + u·n) for n towards what is seen.
+fn exact(celerity: Celerity, direction: DVec3) -> f64 {
+    let [u, v] = [celerity.vector(), direction].map(|v| v.to_array().map(Wide::from));
+    let length = dot(v, v).sqrt();
+    let gamma = (Wide::from(1.0) + dot(u, u)).sqrt();
+    (length / (gamma * length + dot(u, v))).value()
+}
+
 /// The greatest relative error of the light of all wavelengths together, D⁴, over a triangle that is seen so large, abreast:
-/// of one that is not cut, and of one that is.
-fn errors(degrees: f64, beta: f64) -> [f64; 2] {
-    let failed = [f64::INFINITY; 2];
+/// from D at the vertices of one that is not cut, and of one that is, and from D in every pixel.
+fn errors(degrees: f64, beta: f64) -> [f64; 3] {
+    let failed = [f64::INFINITY; 3];
     let Ok(celerity) = Celerity::from_beta(beta * DVec3::new(0.6, 0.0, 0.8)) else { return failed };
     let motion = Motion { celerity, origin: Event::at(-10.0, 10.0 * DVec3::Y) };
     const SIDE: f64 = 200.0;
@@ -50,58 +59,70 @@ fn errors(degrees: f64, beta: f64) -> [f64; 2] {
         let shading = shading.clone().with_doppler_at(at);
         shade(&[drawable], &camera.lens, &Samples::new(1), &shading.seen_by(&camera.observer))
     };
-    let error = |seen: &ApparentMesh| {
-        let [vertices, pixels] = [DopplerAt::Vertex, DopplerAt::Pixel].map(|at| draw(seen, at));
-        let relative = |(a, b): (&[f32; 3], &[f32; 3])| (f64::from(a[0]) / f64::from(b[0]) - 1.0).abs();
-        let seen = |((_, b), body): &((&[f32; 3], &[f32; 3]), &i32)| **body >= 0 && b[0] > 0.0;
-        let all =
-            zip(zip(&vertices.color, &pixels.color), &pixels.body).filter(seen).map(|(c, _)| relative(c));
-        all.reduce(f64::max).unwrap_or(f64::INFINITY)
+    // Of light that is not shifted.
+    let unshifted = luminance(Paint::CLAY);
+    let world = |v: DVec3| {
+        let [right, up, forward] = camera.observer.axes();
+        v.x * right + v.y * up + v.z * forward
+    };
+    let error = |seen: &ApparentMesh, at: DopplerAt| {
+        let film = draw(seen, at);
+        let relative = |i: usize| {
+            let pixel = DVec2::new((i % film.width as usize) as f64, (i / film.width as usize) as f64) + 0.5;
+            let doppler = exact(celerity, world(camera.lens.direction(pixel).unwrap_or(DVec3::Z)));
+            (f64::from(film.color[i][0]) / (f64::from(unshifted) * doppler.powi(4)) - 1.0).abs()
+        };
+        let seen = (0..film.body.len()).filter(|i| film.body[*i] >= 0);
+        seen.map(relative).reduce(f64::max).unwrap_or(f64::INFINITY)
     };
     let how = Subdivision { tolerance: Options::default().tolerance, ..Subdivision::default() };
     let cut = ApparentMesh::new(mesh, &map, &Field::new(&camera.lens), &how);
-    [error(&ApparentMesh::linear(mesh, &map)), cut.map_or(f64::INFINITY, |seen| error(&seen))]
+    let Ok(cut) = cut else { return failed };
+    let whole = ApparentMesh::linear(mesh, &map);
+    [
+        error(&whole, DopplerAt::Vertex),
+        error(&cut, DopplerAt::Vertex),
+        error(&whole, DopplerAt::Pixel).max(error(&cut, DopplerAt::Pixel)),
+    ]
 }
 
 pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     let (angles, betas) = (resolution.some(&ANGLES, 4), resolution.some(&BETAS, 4));
-    let cells: Vec<[f64; 2]> = (0..angles.len() * betas.len())
+    let cells: Vec<[f64; 3]> = (0..angles.len() * betas.len())
         .into_par_iter()
         .map(|cell| errors(angles[cell % angles.len()], betas[cell / angles.len()]))
         .collect();
-    let planner = match Options::default().doppler_at {
-        DopplerAt::Vertex => Planner::Enters,
-        DopplerAt::Pixel => Planner::Avoids,
-    };
+    let usual = Options::default().doppler_at;
     [
         (
             "uncut",
-            "the mesh's own triangles",
-            "Fails where triangles look larger than some degrees and are fast: D⁴ is no straight line.",
+            "D at the mesh's own vertices",
+            DopplerAt::Vertex,
+            "Fails where triangles look larger than some degrees and are fast: D⁴ is no straight line. Taken only for --doppler vertex.",
         ),
         (
             "cut",
-            "cut to ¼ px",
-            "Cutting helps, but is for outlines: it stops where those are straight, whatever the light does.",
+            "D at vertices, cut to ¼ px",
+            DopplerAt::Vertex,
+            "Cutting helps, but is for outlines: it stops where those are straight, whatever the light does. Taken only for --doppler vertex.",
         ),
+        ("pixels", "D in every pixel", DopplerAt::Pixel, "Fails nowhere; taken unless --doppler vertex asks for the paper's way."),
     ]
     .into_iter()
     .enumerate()
-    .map(|(way, (name, title, what))| Map {
+    .map(|(way, (name, title, at, words))| Map {
         sheet: "vertices",
         name: name.to_owned(),
-        title: format!("D at vertices, {title}"),
+        title: title.to_owned(),
         x: Axis::of("size of the triangle, degrees", angles.clone()),
         y: Axis::of("β", betas.clone()),
-        quantity: "greatest relative error of the light (D⁴)",
+        quantity: "greatest relative error of D⁴",
         // A step of eight bits near white.
         tolerance: 0.01,
         errors: cells.iter().map(|errors| errors[way]).collect(),
         conditioning: None,
-        planner: vec![planner; cells.len()],
-        words: format!(
-            "{what} D is worked out in every pixel unless --doppler vertex asks for the paper's way."
-        ),
+        planner: vec![if at == usual { Planner::Enters } else { Planner::Avoids }; cells.len()],
+        words: words.to_owned(),
     })
     .collect()
 }
