@@ -47,7 +47,7 @@ impl std::fmt::Display for Coloring {
 pub const OCTAVES: f64 = 5.0;
 
 /// log₂D over [`OCTAVES`] and the linear sRGB colour there.
-const SCALE: [(f64, [f32; 3]); 9] = [
+pub(crate) const SCALE: [(f64, [f32; 3]); 9] = [
     (-1.0, [0.05, 0.0, 0.0]),
     (-0.6, [0.35, 0.0, 0.01]),
     (-0.3, [0.9, 0.05, 0.02]),

@@ -2,7 +2,7 @@
 
 use crate::color::Coloring;
 use crate::film::Film;
-use crate::render::{Options, RenderError, render_again};
+use crate::render::{Options, Raster, RenderError, render_again};
 use crate::scene::{Camera, Scene};
 use crate::tone::{Development, Tone};
 
@@ -67,7 +67,10 @@ impl Exposure {
         };
         // Outlines matter less than the time; paths need a few to be near the truth.
         let samples = if options.paths.bounces > 0 { 8 } else { 1 };
-        let options = Options { coloring, samples, tolerance: options.tolerance.max(1.0), ..options.clone() };
+        // So few pixels are the CPU's, unless another is asked for.
+        let raster = if options.raster == Raster::Auto { Raster::Cpu } else { options.raster };
+        let tolerance = options.tolerance.max(1.0);
+        let options = Options { coloring, samples, tolerance, raster, ..options.clone() };
         let count = cameras.len().min(METERED);
         let place = |i: usize| if count > 1 { i * (cameras.len() - 1) / (count - 1) } else { 0 };
         let prepared = options.prepare(scene, cameras)?;

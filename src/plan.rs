@@ -1,8 +1,8 @@
 //! Which method a scene needs.
 
 use crate::color::Coloring;
-use crate::light::has_shadows;
-use crate::scene::{Body, Material, Scene};
+use crate::light::{DopplerAt, has_shadows};
+use crate::scene::{Body, Camera, EmissionLaw, Material, Projection, Scene};
 
 /// How what a pixel sees is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -93,4 +93,65 @@ pub fn cheapest(scene: &Scene, coloring: Coloring) -> (Method, &'static str) {
     } else {
         (Method::Exact, "nothing casts shadows")
     }
+}
+
+/// Graphics processors work in single precision. It is enough, to 10⁻⁴ in distance and colour, for bodies and cameras that move
+/// relative to each other with up to this γ; `docs/gpu.md` has what was measured.
+pub const MOST_GAMMA_ON_GPU: f64 = 1e5;
+
+/// Directions of wide lenses are told apart in single precision where there are up to so many pixels a radian.
+const MOST_FOCAL_ON_GPU: f64 = 3e4;
+
+/// Why a graphics processor does not draw what these cameras see of a scene, if it does not.
+pub fn not_on_gpu(
+    scene: &Scene,
+    cameras: &[&Camera],
+    method: Method,
+    coloring: Coloring,
+    doppler_at: DopplerAt,
+) -> Option<&'static str> {
+    let bodies = || scene.bodies.iter();
+    let materials = || bodies().flat_map(|body| &body.mesh.materials);
+    let gamma = |camera: &Camera, body: &Body| {
+        let (camera, body) = (camera.observer.celerity(), &body.motion.celerity);
+        body.gamma() * camera.gamma() - body.vector().dot(camera.vector())
+    };
+    let is_narrow = |camera: &&Camera| {
+        let lens = camera.lens;
+        lens.projection() != Projection::Pinhole && lens.focal().max_element() > MOST_FOCAL_ON_GPU
+    };
+    let colored = coloring != Coloring::Doppler;
+    let smooth = |body: &Body| {
+        !body.mesh.normals.is_empty() && body.mesh.materials.iter().any(|m| m.law != EmissionLaw::Isotropic)
+    };
+    if method == Method::Trace {
+        Some("rays are traced on the CPU")
+    } else if scene.sky.is_some() && method == Method::Exact {
+        Some("a sky is drawn on the CPU")
+    } else if colored && !scene.lights.is_empty() && materials().any(|m| m.is_lit(true)) {
+        Some("what lights shine on is drawn on the CPU")
+    } else if colored && !scene.lights.is_empty() && bodies().any(|body| body.mesh.materials.is_empty()) {
+        Some("what lights shine on is drawn on the CPU")
+    } else if colored && materials().any(Material::is_textured) {
+        Some("textures are drawn on the CPU")
+    } else if colored && bodies().any(smooth) {
+        Some("laws of emission on smooth normals are worked out on the CPU")
+    } else if doppler_at == DopplerAt::Vertex {
+        Some("Doppler factors of vertices are worked out on the CPU")
+    } else if cameras.iter().any(is_narrow) {
+        Some("the field of view is too narrow for single precision")
+    } else if cameras.iter().any(|c| bodies().any(|b| gamma(c, b) > MOST_GAMMA_ON_GPU)) {
+        Some("γ is too large for single precision")
+    } else {
+        None
+    }
+}
+
+/// Opening a graphics processor takes as long as the CPU takes for so many samples.
+const OPENING: u64 = 1 << 25;
+
+/// Whether so many pictures by these cameras are enough work to look for a graphics processor.
+pub fn is_worth_a_gpu(cameras: &[&Camera], samples: u32) -> bool {
+    let pixels = |camera: &&Camera| u64::from(camera.lens.width()) * u64::from(camera.lens.height());
+    cameras.iter().map(pixels).sum::<u64>().saturating_mul(samples.into()) > OPENING
 }

@@ -4,12 +4,14 @@ use crate::apparent::{ApparentMesh, Field, Subdivision, TooManyPieces};
 use crate::color::Coloring;
 use crate::film::{Film, Samples};
 use crate::light::{DopplerAt, Shading, ShadingError};
-use crate::plan::Method;
+use crate::plan::{Method, is_worth_a_gpu, not_on_gpu};
+#[cfg(feature = "gpu")]
+use crate::raster::gpu::{Gpu, GpuError, Uncut};
 use crate::raster::{Drawable, TooManyToPaint, paint, shade_again};
 use crate::relativity::ApparentMap;
 use crate::scene::{Camera, Eye, EyeError, Mesh, Scene, Spacetime, SpacetimeError};
 use crate::trace::{Look, Paths, Traced, Tracer};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use terrell_geodesic::{Accuracy, Curved, KerrSchild};
 
@@ -29,7 +31,7 @@ pub struct Options {
     pub coloring: Coloring,
     /// Where the Doppler factor is worked out.
     pub doppler_at: DopplerAt,
-    /// What decides which triangle a pixel sees in apparent shading.
+    /// What decides which triangle a pixel sees.
     pub raster: Raster,
     /// How light of surfaces on each other is followed, where rays are traced.
     pub paths: Paths,
@@ -41,8 +43,13 @@ pub enum Raster {
     /// A z-buffer: exact; see [`shade_again`].
     #[default]
     Cpu,
-    /// The painter's algorithm by tiny-skia, which has its limits; see [`paint`].
+    /// The painter's algorithm by tiny-skia, which has its limits; see [`paint`]. For apparent shading.
     Skia,
+    /// A graphics processor; see [`crate::raster`]. For exact and apparent shading of what shines by itself.
+    Wgpu,
+    /// A graphics processor where there is one that is more than a program on the CPU, which can draw the scene, and enough
+    /// to be drawn; else, and if it fails, the CPU.
+    Auto,
 }
 
 /// Why a scene could not be drawn.
@@ -63,6 +70,13 @@ pub enum RenderError {
     /// Something that there is not in the scene's spacetime.
     #[error(transparent)]
     Spacetime(#[from] SpacetimeError),
+    /// A graphics processor that did not draw.
+    #[cfg(feature = "gpu")]
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// What a graphics processor is not for.
+    #[error("{0}; leave out what asks for a graphics processor (--raster wgpu)")]
+    NotOnGpu(&'static str),
     /// Polygons in curved spacetime.
     #[error("in curved spacetime only rays show what is seen; ask for the method trace, or auto")]
     OnlyRays,
@@ -98,16 +112,55 @@ impl Options {
         if scene.spacetime.is_curved() && self.method != Method::Trace {
             return Err(RenderError::OnlyRays);
         }
-        let observers: Vec<_> = cameras.into_iter().map(|c| &c.observer).collect();
-        let pictures = observers.len();
+        let cameras: Vec<_> = cameras.into_iter().collect();
+        let observers = cameras.iter().map(|c| &c.observer);
         let shading = Shading::new(scene, observers, self.coloring)?.with_doppler_at(self.doppler_at);
-        let tracer = match self.method {
-            Method::Exact => Some(Tracer::exact(scene, pictures)),
-            Method::Trace => Some(Tracer::new(scene)),
-            Method::Apparent => None,
-        };
-        Ok(Prepared { shading, tracer })
+        let gpu = self.gpu(scene, &cameras)?;
+        let prepared = Prepared { shading, tracer: OnceLock::new(), pictures: cameras.len(), gpu };
+        if prepared.gpu.is_none() {
+            prepared.tracer(scene, self.method);
+        }
+        Ok(prepared)
     }
+
+    /// The graphics processor to draw with, if one is to.
+    fn gpu(&self, scene: &Scene, cameras: &[&Camera]) -> Result<Option<Device>, RenderError> {
+        let reason = || not_on_gpu(scene, cameras, self.method, self.coloring, self.doppler_at);
+        match self.raster {
+            Raster::Cpu | Raster::Skia => Ok(None),
+            Raster::Wgpu => match reason() {
+                Some(reason) => Err(RenderError::NotOnGpu(reason)),
+                None => open().map(Some),
+            },
+            Raster::Auto if !is_worth_a_gpu(cameras, self.samples) || reason().is_some() => Ok(None),
+            Raster::Auto => Ok(open().ok().filter(|gpu| gpu.is_hardware())),
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+type Device = Arc<Gpu>;
+
+#[cfg(feature = "gpu")]
+fn open() -> Result<Device, RenderError> {
+    Ok(Gpu::shared()?)
+}
+
+/// There is none.
+#[cfg(not(feature = "gpu"))]
+#[derive(Clone, Debug)]
+enum Device {}
+
+#[cfg(not(feature = "gpu"))]
+impl Device {
+    fn is_hardware(&self) -> bool {
+        match *self {}
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+fn open() -> Result<Device, RenderError> {
+    Err(RenderError::NotOnGpu("this program was built without the feature gpu"))
 }
 
 /// What is the same for all pictures of a scene.
@@ -115,8 +168,21 @@ impl Options {
 pub struct Prepared {
     /// How its surfaces shine and are lit.
     pub shading: Shading,
-    /// Its meshes as lines of sight are followed through them, if they are.
-    tracer: Option<Tracer>,
+    /// Its meshes as lines of sight are followed through them, once they are.
+    tracer: OnceLock<Tracer>,
+    pictures: usize,
+    gpu: Option<Device>,
+}
+
+impl Prepared {
+    /// What follows lines of sight, if something does.
+    fn tracer(&self, scene: &Scene, method: Method) -> Option<&Tracer> {
+        match method {
+            Method::Exact => Some(self.tracer.get_or_init(|| Tracer::exact(scene, self.pictures))),
+            Method::Trace => Some(self.tracer.get_or_init(|| Tracer::new(scene))),
+            Method::Apparent => None,
+        }
+    }
 }
 
 /// What was done and what it took.
@@ -132,6 +198,10 @@ pub struct Report {
     pub shading: Duration,
     /// Rays, where they were traced.
     pub rays: Option<Traced>,
+    /// The graphics processor that drew, if one did.
+    pub gpu: Option<String>,
+    /// Why one that was to draw did not, so that the CPU did.
+    pub gpu_fault: Option<String>,
 }
 
 /// A step of [`render`], for showing progress.
@@ -210,55 +280,143 @@ pub fn render_again(
     film: &mut Film,
     mut step: impl FnMut(Step) + Send,
 ) -> Result<Report, RenderError> {
-    let samples = Samples::new(options.samples);
-    let shading = &prepared.shading.seen_by(&camera.observer);
-    let triangles = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
-    if let Some(tracer) = &prepared.tracer {
-        let start = Instant::now();
-        let paths = if options.method == Method::Exact { Paths::default() } else { options.paths };
-        let look = Look { samples: samples.offsets(), shading, paths };
-        let rays = if let (Spacetime::Kerr(hole), Some(eye)) = (&scene.spacetime, scene.eye(camera)?) {
-            let space = around_seen_from(*hole, &eye);
-            let step = Mutex::new(step);
-            let of = camera.lens.height();
-            // A panic of another thread is told by that thread.
-            let done = |done| step.lock().unwrap_or_else(PoisonError::into_inner)(Step::Rows { done, of });
-            tracer.trace_curved(scene, &space, &eye, &camera.lens, &look, film, done)
-        } else {
-            tracer.trace(scene, camera, &look, film, |done, of| step(Step::Tracing { done, of }))
-        };
-        let (pieces, subdivision) = (triangles, Duration::ZERO);
-        return Ok(Report { triangles, pieces, subdivision, shading: start.elapsed(), rays: Some(rays) });
-    }
-    let field = Field::new(&camera.lens);
-    let pieces = |(_, _, seen): &(ApparentMap, Arc<Mesh>, ApparentMesh)| seen.triangles.len();
+    #[cfg(feature = "gpu")]
+    let fault = match &prepared.gpu {
+        None => None,
+        Some(gpu) => match draw_on(gpu, scene, camera, options, prepared, film, &mut step) {
+            Err(RenderError::Gpu(fault)) if options.raster == Raster::Auto => Some(fault.to_string()),
+            done => return done,
+        },
+    };
+    #[cfg(not(feature = "gpu"))]
+    let fault = None;
+    let report = match prepared.tracer(scene, options.method) {
+        Some(tracer) => follow(tracer, scene, camera, options, prepared, film, step),
+        None => polygons(scene, camera, options, prepared, film, step),
+    }?;
+    Ok(Report { gpu_fault: fault, ..report })
+}
+
+/// By lines of sight.
+fn follow(
+    tracer: &Tracer,
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    prepared: &Prepared,
+    film: &mut Film,
+    mut step: impl FnMut(Step) + Send,
+) -> Result<Report, RenderError> {
+    let (samples, shading) = (Samples::new(options.samples), &prepared.shading.seen_by(&camera.observer));
+    let triangles = count(scene);
     let start = Instant::now();
-    let mut seen = Vec::with_capacity(scene.bodies.len());
+    let paths = if options.method == Method::Exact { Paths::default() } else { options.paths };
+    let look = Look { samples: samples.offsets(), shading, paths };
+    let rays = if let (Spacetime::Kerr(hole), Some(eye)) = (&scene.spacetime, scene.eye(camera)?) {
+        let space = around_seen_from(*hole, &eye);
+        let step = Mutex::new(step);
+        let of = camera.lens.height();
+        // A panic of another thread is told by that thread.
+        let done = |done| step.lock().unwrap_or_else(PoisonError::into_inner)(Step::Rows { done, of });
+        tracer.trace_curved(scene, &space, &eye, &camera.lens, &look, film, done)
+    } else {
+        tracer.trace(scene, camera, &look, film, |done, of| step(Step::Tracing { done, of }))
+    };
+    let shading = start.elapsed();
+    Ok(Report { triangles, pieces: triangles, shading, rays: Some(rays), ..Report::default() })
+}
+
+fn count(scene: &Scene) -> usize {
+    scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum()
+}
+
+/// A body as it is seen.
+type Seen = (ApparentMap, Arc<Mesh>, ApparentMesh);
+
+/// Every body moved to where it is seen, and cut.
+fn cut(
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    step: &mut impl FnMut(Step),
+) -> Result<Vec<Seen>, RenderError> {
+    let field = Field::new(&camera.lens);
+    let mut seen: Vec<Seen> = Vec::with_capacity(scene.bodies.len());
     for (index, body) in scene.bodies.iter().enumerate() {
         step(Step::Cutting(index));
         let map = ApparentMap::new(&body.motion, &camera.observer);
         // What is not cut is drawn however much it is, and may be more than allowed already.
-        let left = options.most_pieces.saturating_sub(seen.iter().map(pieces).sum());
+        let left = options.most_pieces.saturating_sub(pieces(&seen));
         let how = Subdivision { tolerance: options.tolerance, most: left };
         let fault = |e| TooManyPieces { most: options.most_pieces, ..e };
         let mesh = body.mesh_seen(&camera.observer);
         let apparent = ApparentMesh::new(&mesh, &map, &field, &how).map_err(fault)?;
         seen.push((map, mesh, apparent));
     }
+    Ok(seen)
+}
+
+fn pieces(seen: &[Seen]) -> usize {
+    seen.iter().map(|(_, _, seen)| seen.triangles.len()).sum()
+}
+
+fn drawables(seen: &[Seen]) -> Vec<Drawable<'_>> {
+    let drawable = |(body, (map, mesh, seen))| Drawable { body, mesh, map, seen };
+    seen.iter().map(|(map, mesh, seen)| (map, &**mesh, seen)).enumerate().map(drawable).collect()
+}
+
+/// By polygons.
+fn polygons(
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    prepared: &Prepared,
+    film: &mut Film,
+    mut step: impl FnMut(Step) + Send,
+) -> Result<Report, RenderError> {
+    let (samples, shading) = (Samples::new(options.samples), &prepared.shading.seen_by(&camera.observer));
+    let start = Instant::now();
+    let seen = cut(scene, camera, options, &mut step)?;
     let cut = Instant::now();
     step(Step::Drawing);
-    let drawables: Vec<_> =
-        seen.iter().enumerate().map(|(body, (map, mesh, seen))| Drawable { body, mesh, map, seen }).collect();
+    let drawables = drawables(&seen);
     match options.raster {
-        Raster::Cpu => shade_again(&drawables, &camera.lens, &samples, shading, film),
         Raster::Skia => *film = paint(&drawables, &camera.lens, &samples, shading)?,
+        _ => shade_again(&drawables, &camera.lens, &samples, shading, film),
     }
-    let report = Report {
-        triangles,
-        pieces: seen.iter().map(pieces).sum(),
-        subdivision: cut - start,
-        shading: cut.elapsed(),
-        rays: None,
+    let (subdivision, shading) = (cut - start, cut.elapsed());
+    let (triangles, pieces) = (count(scene), pieces(&seen));
+    Ok(Report { triangles, pieces, subdivision, shading, ..Report::default() })
+}
+
+/// On a graphics processor.
+#[cfg(feature = "gpu")]
+fn draw_on(
+    gpu: &Gpu,
+    scene: &Scene,
+    camera: &Camera,
+    options: &Options,
+    prepared: &Prepared,
+    film: &mut Film,
+    step: &mut impl FnMut(Step),
+) -> Result<Report, RenderError> {
+    let (samples, shading) = (Samples::new(options.samples), &prepared.shading.seen_by(&camera.observer));
+    let (start, triangles) = (Instant::now(), count(scene));
+    let report = Report { triangles, gpu: Some(gpu.name().to_owned()), ..Report::default() };
+    if options.method == Method::Apparent {
+        let seen = cut(scene, camera, options, step)?;
+        let cut = Instant::now();
+        step(Step::Drawing);
+        gpu.draw(&drawables(&seen), &camera.lens, &samples, shading, film)?;
+        let (subdivision, shading) = (cut - start, cut.elapsed());
+        return Ok(Report { pieces: pieces(&seen), subdivision, shading, ..report });
+    }
+    step(Step::Drawing);
+    let seen = |body: &crate::scene::Body| {
+        (ApparentMap::new(&body.motion, &camera.observer), body.mesh_seen(&camera.observer))
     };
-    Ok(report)
+    let bodies: Vec<_> = scene.bodies.iter().map(seen).collect();
+    let uncut = bodies.iter().enumerate().map(|(body, (map, mesh))| Uncut { body, mesh, map });
+    gpu.draw_uncut(&uncut.collect::<Vec<_>>(), &camera.lens, &samples, shading, film)?;
+    Ok(Report { pieces: triangles, shading: start.elapsed(), ..report })
 }

@@ -293,7 +293,7 @@ impl Done<'_> {
             ),
         };
         let mut line = format!(
-            "{}: {} of {}x{} {}, {} a second, {}, {bodies}: {} on the CPU, {}{}\n",
+            "{}: {} of {}x{} {}, {} a second, {}, {bodies}: {} on {}, {}{}\n",
             self.output.display(),
             frames(tally.drawn),
             self.size[0],
@@ -306,6 +306,7 @@ impl Done<'_> {
                 Method::Apparent => "apparent shading",
                 Method::Trace => "ray tracing",
             },
+            tally.gpu.as_ref().map_or_else(|| "the CPU".to_owned(), |name| format!("the GPU ({name})")),
             self.colors_in_words(),
             took,
         );
@@ -362,7 +363,8 @@ impl Done<'_> {
             "terrell": env!("CARGO_PKG_VERSION"),
             "output": self.output,
             "spacetime": summary::spacetime(&self.takes[0].panels[0].scene),
-            "raster": summary::raster(self.options.raster),
+            "raster": summary::raster(self.options.raster, tally.gpu.is_some()),
+            "gpu": tally.gpu,
             "threads": rayon::current_num_threads(),
             "color": self.options.coloring.to_string(),
             "doppler_at": summary::doppler_at(self.options.doppler_at),

@@ -85,8 +85,8 @@ pub struct LookFlags {
     /// How what a pixel sees is found
     #[arg(long, value_enum, default_value = "auto")]
     method: MethodFlag,
-    /// What decides which triangle a pixel sees, where triangles are cut (--method apparent)
-    #[arg(long, value_enum, default_value = "cpu")]
+    /// What decides which triangle a pixel sees
+    #[arg(long, value_enum, default_value = "auto")]
     raster: RasterFlag,
 }
 
@@ -211,10 +211,14 @@ pub(super) enum ColorFlag {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum RasterFlag {
-    /// A z-buffer: exact
+    /// A graphics processor if there is one, it can draw the scene, and there is much to draw; else the CPU
+    Auto,
+    /// The CPU: exact
     Cpu,
-    /// Triangles painted back to front by tiny-skia: wrong where they pass through each other
+    /// Triangles painted back to front by tiny-skia (--method apparent): wrong where they pass through each other
     Skia,
+    /// A graphics processor, a software one if there is no other: what shines by itself, to single precision
+    Wgpu,
 }
 
 impl LookFlags {
@@ -233,8 +237,10 @@ impl LookFlags {
                 DopplerFlag::Vertex => DopplerAt::Vertex,
             },
             raster: match self.raster {
+                RasterFlag::Auto => Raster::Auto,
                 RasterFlag::Cpu => Raster::Cpu,
                 RasterFlag::Skia => Raster::Skia,
+                RasterFlag::Wgpu => Raster::Wgpu,
             },
             ..usual
         })
@@ -274,6 +280,10 @@ impl LookFlags {
                 "is for flat spacetime; in curved spacetime only rays show what is seen, so leave it out";
             return Err(format!("{flag} {why}").into());
         }
+        if method == Method::Trace && self.raster == RasterFlag::Wgpu {
+            let why = why.map_or_else(String::new, |why| format!(", which this scene needs: {why}"));
+            return Err(format!("--raster wgpu is for shading; rays are traced on the CPU{why}").into());
+        }
         scene.check_spacetime()?;
         if scene.spacetime.is_curved() && self.bounces.is_some_and(|n| n > 0) {
             return Err("--bounces is for flat spacetime; in curved spacetime surfaces do not light each other, so leave it out".into());
@@ -302,7 +312,7 @@ impl LookFlags {
 
     /// For what draws by several methods: that none of them is asked for.
     pub fn check_no_method(&self) -> Result<(), Fault> {
-        if self.method != MethodFlag::Auto || self.raster != RasterFlag::Cpu {
+        if self.method != MethodFlag::Auto || self.raster != RasterFlag::Auto {
             return Err("--method and --raster choose one way to draw, and here all are compared; --methods says which of them".into());
         }
         Ok(())

@@ -72,6 +72,7 @@ impl Render {
         let report = render_again(&scene, &camera, &options, &prepared, &mut film, |step| {
             progress.show(&scene, step)
         })?;
+        scene.notes.extend(summary::gpu_note(&report));
         progress.clear();
         let to_lights = report.rays.as_ref().map_or(&[][..], |rays| &rays.to_lights);
         let dark = summary::dark_lights(to_lights, &scene, &camera.observer);
@@ -236,7 +237,8 @@ impl Done<'_> {
             "spacetime": summary::spacetime(scene),
             "method": options.method.to_string(),
             "method_because": why,
-            "raster": summary::raster(options.raster),
+            "raster": summary::raster(options.raster, report.gpu.is_some()),
+            "gpu": report.gpu,
             "threads": rayon::current_num_threads(),
             "color": options.coloring.to_string(),
             "doppler_at": summary::doppler_at(options.doppler_at),

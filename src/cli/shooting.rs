@@ -53,6 +53,8 @@ pub struct Tally {
     pub changed: usize,
     pub surplus: usize,
     pub pieces: usize,
+    /// What graphics processor drew, if one did.
+    pub gpu: Option<String>,
     /// Pictures that show something, all of it black.
     pub dark: usize,
     /// Pictures with rays that have no right colour.
@@ -211,7 +213,11 @@ impl Shooting<'_> {
                 self.tally.flagged += 1;
                 self.tally.rays = self.tally.rays.with(count);
             }
+            if let Some(note) = summary::gpu_note(&report).filter(|note| !self.notes.contains(note)) {
+                self.notes.push(note);
+            }
             self.tally.pieces += report.pieces;
+            self.tally.gpu = report.gpu.or(self.tally.gpu.take());
             self.tally.mapping += report.subdivision;
             self.tally.shading += report.shading;
             let start = Instant::now();

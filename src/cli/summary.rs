@@ -246,10 +246,24 @@ pub fn shadow_note(scene: &Scene, coloring: Coloring) -> Option<String> {
     }
 }
 
+/// "the CPU", or what graphics processor.
+pub fn device(report: &Report) -> String {
+    report.gpu.as_ref().map_or_else(|| "the CPU".to_owned(), |name| format!("the GPU ({name})"))
+}
+
+/// Why the CPU drew where it was not meant to, for people to read.
+pub fn gpu_note(report: &Report) -> Option<String> {
+    report.gpu_fault.as_ref().map(|fault| format!("{fault}; drawn on the CPU instead"))
+}
+
 /// What drew it, and why: "apparent shading on the CPU, 12 triangles cut into 96 for 0.25 px".
 pub fn method_in_words(options: &Options, report: &Report, why: Option<&str>) -> String {
     let why = why.map_or_else(String::new, |why| format!(" ({why})"));
+    let device = device(report);
     match (&report.rays, options.raster) {
+        _ if report.gpu.is_some() && options.method == Method::Exact => {
+            format!("exact shading on {device}{why}, {} triangles", report.triangles)
+        }
         (Some(rays), _) => {
             let Count { primary, shadow, path, .. } = rays.count;
             let mut words = match options.method {
@@ -274,7 +288,7 @@ pub fn method_in_words(options: &Options, report: &Report, why: Option<&str>) ->
             words
         }
         (None, raster) => format!(
-            "apparent shading on the CPU{why}{}, {} triangles cut into {} for {} px",
+            "apparent shading on {device}{why}{}, {} triangles cut into {} for {} px",
             if raster == Raster::Skia { " (painted back to front)" } else { "" },
             report.triangles,
             report.pieces,
@@ -320,10 +334,12 @@ pub fn doppler_at(doppler_at: DopplerAt) -> &'static str {
     }
 }
 
-pub fn raster(raster: Raster) -> &'static str {
+pub fn raster(raster: Raster, gpu: bool) -> &'static str {
     match raster {
-        Raster::Cpu => "cpu",
         Raster::Skia => "skia",
+        Raster::Wgpu => "wgpu",
+        Raster::Auto if gpu => "wgpu",
+        Raster::Auto | Raster::Cpu => "cpu",
     }
 }
 

@@ -4,8 +4,12 @@ use super::shading::{MaterialShading, SceneLight, times};
 use super::{DopplerAt, Point, Shading, Source, gloss};
 use crate::color::{Coloring, false_color};
 use crate::scene::{Colors, EmissionLaw, Gloss, LightKind};
+#[cfg(feature = "gpu")]
+use crate::spectrum::DopplerTable;
 use crate::spectrum::{Beyond, Spectrum, luminance};
 use glam::DVec3;
+#[cfg(feature = "gpu")]
+use std::sync::Arc;
 use terrell_geodesic::{FourVector, Rest};
 
 /// The way light came to a point of a surface, backwards.
@@ -60,6 +64,14 @@ impl<'a> SurfaceLight<'a> {
 
     pub fn gloss(&self) -> &'a Gloss {
         &self.material.gloss
+    }
+
+    /// What it shines with: unshifted colours where they are not themselves, the table of what is seen of it where there is
+    /// one, how strong it is, and how that depends on direction.
+    #[cfg(feature = "gpu")]
+    pub fn shining(&self) -> (Option<[f32; 9]>, Option<&'a Arc<DopplerTable>>, f32, EmissionLaw) {
+        let MaterialShading { unshifted, own, strength, law, .. } = self.material;
+        (*unshifted, own.as_ref(), *strength, *law)
     }
 
     /// What is assumed of its colours outside the visible.

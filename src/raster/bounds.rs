@@ -1,3 +1,4 @@
+use crate::relativity::ApparentMap;
 use crate::scene::{Lens, Projection};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -161,6 +162,40 @@ impl<'a> Bounder<'a> {
         }
         [self.rect([from, to], rows), None]
     }
+}
+
+/// Points, observer's axes, in whose convex hull a triangle is seen; none for one that is not seen at all. Its corners are at
+/// `offsets` from the observer in the rest frame, and seen at `seen`; `axis` is the map's in the observer's axes.
+///
+/// That needs no cutting. Between its corners, a triangle is seen beside the flat one between their apparent places: along
+/// the motion, by γβ(linear r′ − r′), which is at most γβ L²/6r for a longest side L that is no nearer than r, since r′ is
+/// convex and bends by 1/r at most. So it is seen within what the flat one sweeps when moved that far.
+#[inline]
+pub(crate) fn hull(
+    map: &ApparentMap,
+    axis: DVec3,
+    offsets: [DVec3; 3],
+    seen: [DVec3; 3],
+    one_sided: bool,
+) -> Option<[DVec3; 6]> {
+    let [a, b, c] = offsets;
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
+    let height = normal.dot(a);
+    if normal == DVec3::ZERO || (one_sided && height >= 0.0) {
+        return None;
+    }
+    let nearest = a.length_squared().min(b.length_squared()).min(c.length_squared()).sqrt();
+    let side = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared()).sqrt();
+    let mut nearest = nearest - side;
+    if nearest < side {
+        // The plane's distance says more.
+        nearest = nearest.max((height / normal.length()).abs());
+    }
+    let beside = map.speed() * (side * side) / (6.0 * nearest);
+    let [a, b, c] = seen;
+    let along = axis * (beside * (1.0 + 1e-9));
+    Some([a, b, c, a + along, b + along, c + along])
 }
 
 /// The cone of directions that holds points' convex hull: unit axis and half-angle, a little wide. None where it is not

@@ -8,6 +8,8 @@
 mod band;
 mod bins;
 mod bounds;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 mod order;
 mod painter;
 mod polygon;
@@ -19,7 +21,7 @@ use crate::light::SeenShading;
 use crate::relativity::ApparentMap;
 use crate::scene::{Lens, Mesh};
 use band::Band;
-pub(crate) use bounds::{Bounder, Rect, SLACK_PX};
+pub(crate) use bounds::{Bounder, Rect, SLACK_PX, hull};
 pub use painter::{MOST_PAINTED, TooManyToPaint, paint};
 use rayon::prelude::*;
 

@@ -82,6 +82,12 @@ impl Surface {
         }
     }
 
+    /// Least and greatest 1/r.
+    #[cfg(feature = "gpu")]
+    pub fn range(&self) -> [f64; 2] {
+        self.range
+    }
+
     /// 1/s where the line of sight s·v of length s·`length` meets it, within what is possible there.
     #[inline]
     pub fn clamped(&self, nearness: f64, length: f64) -> f64 {

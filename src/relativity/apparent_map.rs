@@ -267,6 +267,12 @@ impl RestSky {
         self.axis
     }
 
+    /// What the boost multiplies L + v·û by, and 1 over it: what it multiplies L − v·û by.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn stretches(&self) -> [f64; 2] {
+        [self.k, self.inverse_k]
+    }
+
     /// The line of sight `v` (observer's axes), whose length is `length`, in the rest frame.
     #[inline]
     pub fn boosted(&self, v: DVec3, length: f64) -> BoostedSight {

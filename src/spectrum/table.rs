@@ -186,6 +186,12 @@ impl DopplerTable {
         [sum.x, sum.y, sum.z]
     }
 
+    /// ln D of the second node, nodes a unit of ln D, and three columns a node.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn columns(&self) -> (f64, f64, &[[f32; 4]]) {
+        (self.start, self.inverse_step, self.nodes.as_flattened())
+    }
+
     /// How many nodes there are.
     pub fn nodes(&self) -> usize {
         self.nodes.len()

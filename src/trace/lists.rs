@@ -1,6 +1,6 @@
 use super::stage::Target;
 use super::tile::SIDE;
-use crate::raster::{Bounder, Rect, SLACK_PX};
+use crate::raster::{Bounder, Rect, SLACK_PX, hull};
 use crate::relativity::{Points, PointsMut};
 use crate::scene::Lens;
 use glam::{DVec2, DVec3};
@@ -8,10 +8,7 @@ use rayon::prelude::*;
 
 /// Which triangles of one body each tile looks at: those that may be seen in it.
 ///
-/// Where they may be seen needs no cutting. Between its corners, a triangle is seen beside the flat one between their
-/// apparent places: along the motion, by γβ(linear r′ − r′), which is at most γβ L²/6r for a longest side L that is no nearer
-/// than r, since r′ is convex and bends by 1/r at most. So it is seen within what the flat one sweeps when moved that far, and
-/// all that is needed are bounds of six points.
+/// Where they may be seen needs no cutting: bounds of six points (see [`hull`]) are all that is needed.
 pub(super) struct Lists {
     /// Tiles of a row.
     pub columns: usize,
@@ -171,25 +168,9 @@ impl<'a> Bounds<'a> {
     fn hull(&self, number: u32) -> Option<[DVec3; 6]> {
         let Target { mesh, map, tree, .. } = self.target;
         let leaf = tree.leaf(number);
-        let [a, b, c] = leaf.corners.map(|corner| map.offset_rest(corner));
-        let (ab, ac) = (b - a, c - a);
-        let normal = ab.cross(ac);
-        let height = normal.dot(a);
-        if normal == DVec3::ZERO || (leaf.one_sided && height >= 0.0) {
-            return None;
-        }
-        let nearest = a.length_squared().min(b.length_squared()).min(c.length_squared()).sqrt();
-        let side = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared()).sqrt();
-        let mut nearest = nearest - side;
-        if nearest < side {
-            // The plane's distance says more.
-            nearest = nearest.max((height / normal.length()).abs());
-        }
-        let beside = map.speed() * (side * side) / (6.0 * nearest);
+        let offsets = leaf.corners.map(|corner| map.offset_rest(corner));
         let place = |v: u32| DVec3::from_array([0, 1, 2].map(|k| self.seen[k][v as usize]));
-        let [a, b, c] = mesh.triangles[leaf.face as usize].map(place);
-        let along = self.axis * (beside * (1.0 + 1e-9));
-        Some([a, b, c, a + along, b + along, c + along])
+        hull(map, self.axis, offsets, mesh.triangles[leaf.face as usize].map(place), leaf.one_sided)
     }
 }
 

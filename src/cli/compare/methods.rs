@@ -22,12 +22,12 @@ pub const WAYS: &[Way] = &[
     Way {
         name: "trace",
         about: "ray tracing",
-        set: |o| Options { method: Method::Trace, doppler_at: DopplerAt::Pixel, ..o },
+        set: |o| Options { method: Method::Trace, raster: Raster::Cpu, doppler_at: DopplerAt::Pixel, ..o },
     },
     Way {
         name: "exact",
         about: "exact shading",
-        set: |o| Options { method: Method::Exact, doppler_at: DopplerAt::Pixel, ..o },
+        set: |o| Options { method: Method::Exact, raster: Raster::Cpu, doppler_at: DopplerAt::Pixel, ..o },
     },
     Way {
         name: "apparent",

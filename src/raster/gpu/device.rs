@@ -1,0 +1,594 @@
+use super::load::Load;
+use super::records::{PassRecord, PixelRecord};
+use super::{GpuError, shaders};
+use crate::color::Coloring;
+use crate::film::{Film, Samples};
+use crate::scene::{Lens, Projection};
+use crate::tone::{Development, Tone};
+use bytemuck::Pod;
+use std::future::Future;
+use std::pin::pin;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::task::{Context, Poll, Waker};
+
+/// A graphics processor, ready to draw.
+#[derive(Debug)]
+pub struct Gpu {
+    name: String,
+    is_hardware: bool,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    pipelines: Pipelines,
+    /// Why the device is lost, once it is.
+    lost: Arc<OnceLock<String>>,
+}
+
+#[derive(Debug)]
+struct Pipelines {
+    quads: wgpu::RenderPipeline,
+    polygons: wgpu::RenderPipeline,
+    develop: wgpu::ComputePipeline,
+    tone: wgpu::ComputePipeline,
+}
+
+/// The longest side of a part of a picture.
+const PART: u32 = 2048;
+
+/// Pixels of the side of a shader's work group.
+const GROUP: u32 = 8;
+
+const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// What wgpu's futures need natively: they are ready, or soon will be.
+fn wait<T>(future: impl Future<Output = T>) -> T {
+    let mut future = pin!(future);
+    loop {
+        match future.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+            Poll::Ready(value) => return value,
+            Poll::Pending => std::thread::yield_now(),
+        }
+    }
+}
+
+/// What a part of a picture is drawn on.
+struct Targets {
+    seen: wgpu::TextureView,
+    depth: wgpu::TextureView,
+    film: wgpu::Buffer,
+}
+
+/// What shaders read of a scene, where they read it.
+struct Uploaded {
+    skies: wgpu::Buffer,
+    shapes: wgpu::Buffer,
+    figures: wgpu::Buffer,
+    vertices: wgpu::Buffer,
+    faces: wgpu::Buffer,
+    materials: wgpu::Buffer,
+    nodes: wgpu::Buffer,
+    words: wgpu::Buffer,
+    /// Vertices to be drawn.
+    corners: u32,
+    polygons: bool,
+}
+
+impl Gpu {
+    /// The best there is, software if nothing else is there.
+    ///
+    /// # Errors
+    /// If there is none, or it cannot do what is needed.
+    pub fn open() -> Result<Self, GpuError> {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+        let instance = wgpu::Instance::new(descriptor);
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let adapter =
+            wait(instance.request_adapter(&options)).map_err(|e| GpuError::NoAdapter(one_line(&e)))?;
+        let info = adapter.get_info();
+        let name = info.name.clone();
+        let unfit = |why: String| GpuError::Unfit { adapter: name.clone(), why };
+        let usage = adapter.get_texture_format_features(SEEN).allowed_usages;
+        if !usage.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
+            return Err(unfit("it cannot draw on targets of 32-bit numbers".into()));
+        }
+        // As much as it has, of what scenes may be large in.
+        let most = adapter.limits();
+        let required_limits = wgpu::Limits {
+            max_buffer_size: most.max_buffer_size,
+            max_storage_buffer_binding_size: most.max_storage_buffer_binding_size,
+            ..wgpu::Limits::default()
+        };
+        let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+        let (device, queue) = wait(adapter.request_device(&descriptor)).map_err(|e| unfit(one_line(&e)))?;
+        let lost = Arc::new(OnceLock::new());
+        let told = lost.clone();
+        device.set_device_lost_callback(move |_, why| {
+            let _ = told.set(why);
+        });
+        let is_hardware = !matches!(info.device_type, wgpu::DeviceType::Cpu | wgpu::DeviceType::Other);
+        let guarded = Guard::new(&device);
+        let pipelines = Pipelines::new(&device);
+        guarded.finish(&name, &lost)?;
+        Ok(Self { name, is_hardware, device, queue, pipelines, lost })
+    }
+
+    /// The one that all of a program share; opened when it is first asked for, and again if it was lost.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn shared() -> Result<Arc<Self>, GpuError> {
+        static SHARED: Mutex<Option<Arc<Gpu>>> = Mutex::new(None);
+        let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(gpu) = shared.as_ref().filter(|gpu| gpu.lost.get().is_none()) {
+            return Ok(gpu.clone());
+        }
+        let gpu = Arc::new(Self::open()?);
+        *shared = Some(gpu.clone());
+        Ok(gpu)
+    }
+
+    /// What its driver calls it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Whether it is more than a program on the CPU.
+    pub fn is_hardware(&self) -> bool {
+        self.is_hardware
+    }
+
+    /// Draws on a film, which is cleared first.
+    pub(super) fn expose(
+        &self,
+        load: &Load,
+        lens: &Lens,
+        samples: &Samples,
+        coloring: Coloring,
+        film: &mut Film,
+    ) -> Result<(), GpuError> {
+        film.clear(lens.width(), lens.height());
+        let pass = pass(lens, coloring, load.unit);
+        let width = lens.width() as usize;
+        self.in_parts(load, &pass, samples, lens, |part, targets| {
+            let bytes = self.read_back(&targets.film)?;
+            let pixels: &[PixelRecord] = bytemuck::cast_slice(&bytes);
+            for (line, pixels) in pixels.chunks(part.part[0] as usize).take(part.part[1] as usize).enumerate()
+            {
+                let start = (part.corner[1] as usize + line) * width + part.corner[0] as usize;
+                for (i, pixel) in (start..).zip(pixels) {
+                    film.color[i] = pixel.color;
+                    film.distance[i] = pixel.distance;
+                    film.doppler[i] = pixel.doppler;
+                    film.body[i] = pixel.body;
+                    film.face[i] = pixel.face;
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// A picture, three bytes a pixel.
+    pub(super) fn picture(
+        &self,
+        load: &Load,
+        lens: &Lens,
+        samples: &Samples,
+        coloring: Coloring,
+        development: &Development,
+    ) -> Result<Vec<u8>, GpuError> {
+        let exposure = development.ev.exp2();
+        let tone = match development.tone {
+            Tone::Linear => 0,
+            Tone::Filmic => 1,
+            Tone::Log => 2,
+        };
+        let pass = PassRecord { exposure, tone, ..pass(lens, coloring, load.unit) };
+        let width = lens.width() as usize;
+        let mut picture = vec![0; 3 * width * lens.height() as usize];
+        self.in_parts(load, &pass, samples, lens, |part, targets| {
+            let bytes = self.read_back(&self.toned(part, targets)?)?;
+            for (line, pixels) in
+                bytes.chunks(4 * part.part[0] as usize).take(part.part[1] as usize).enumerate()
+            {
+                let start = (part.corner[1] as usize + line) * width + part.corner[0] as usize;
+                for (to, from) in picture[3 * start..].chunks_exact_mut(3).zip(pixels.chunks_exact(4)) {
+                    to.copy_from_slice(&from[..3]);
+                }
+            }
+            Ok(())
+        })?;
+        Ok(picture)
+    }
+
+    /// Draws part by part; `done` takes each from its targets.
+    fn in_parts(
+        &self,
+        load: &Load,
+        pass: &PassRecord,
+        samples: &Samples,
+        lens: &Lens,
+        mut done: impl FnMut(&PassRecord, &Targets) -> Result<(), GpuError>,
+    ) -> Result<(), GpuError> {
+        let uploaded = self.checked(|| self.upload(load))?;
+        let size = [lens.width(), lens.height()];
+        let largest = size.map(|side| side.min(PART));
+        let targets = self.checked(|| Ok(self.targets(largest)))?;
+        for y in (0..size[1]).step_by(PART as usize) {
+            for x in (0..size[0]).step_by(PART as usize) {
+                let part = [(size[0] - x).min(PART), (size[1] - y).min(PART)];
+                let part = PassRecord { corner: [x, y], part, ..*pass };
+                self.checked(|| {
+                    self.draw_part(&part, samples, &uploaded, &targets)?;
+                    done(&part, &targets)
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// All samples of a part, onto its film.
+    fn draw_part(
+        &self,
+        part: &PassRecord,
+        samples: &Samples,
+        uploaded: &Uploaded,
+        targets: &Targets,
+    ) -> Result<(), GpuError> {
+        let count = samples.offsets().len();
+        let weight = 1.0 / count as f32;
+        for (index, offset) in samples.offsets().iter().enumerate() {
+            let pass = PassRecord {
+                sample: offset.map(|c| c as f32),
+                weight,
+                spread: weight.sqrt(),
+                is_first: u32::from(index == 0),
+                ..*part
+            };
+            let job = self.buffer("pass", &[pass], wgpu::BufferUsages::UNIFORM)?;
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            self.encode_raster(&mut encoder, &job, uploaded, targets, part.part);
+            let develop = self.bound(
+                &self.pipelines.develop,
+                [
+                    job.as_entire_binding(),
+                    uploaded.skies.as_entire_binding(),
+                    uploaded.shapes.as_entire_binding(),
+                    uploaded.faces.as_entire_binding(),
+                    uploaded.materials.as_entire_binding(),
+                    uploaded.nodes.as_entire_binding(),
+                    uploaded.words.as_entire_binding(),
+                    targets.film.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(&targets.seen),
+                ],
+            );
+            compute(&mut encoder, &self.pipelines.develop, &develop, part.part);
+            self.queue.submit([encoder.finish()]);
+        }
+        Ok(())
+    }
+
+    /// Which shape each pixel of the part sees.
+    fn encode_raster(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        job: &wgpu::Buffer,
+        uploaded: &Uploaded,
+        targets: &Targets,
+        [width, height]: [u32; 2],
+    ) {
+        let Pipelines { quads, polygons, .. } = &self.pipelines;
+        let pipeline = if uploaded.polygons { polygons } else { quads };
+        let mut entries = vec![
+            job.as_entire_binding(),
+            uploaded.skies.as_entire_binding(),
+            uploaded.shapes.as_entire_binding(),
+            uploaded.figures.as_entire_binding(),
+        ];
+        if uploaded.polygons {
+            entries.push(uploaded.vertices.as_entire_binding());
+        }
+        let layout = pipeline.get_bind_group_layout(0);
+        let entries = entries
+            .into_iter()
+            .zip(0..)
+            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource })
+            .collect::<Vec<_>>();
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &layout,
+            entries: &entries,
+        });
+        let nothing = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 0.0 };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &targets.seen,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(nothing), store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &targets.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
+        pass.set_scissor_rect(0, 0, width, height);
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..uploaded.corners, 0..1);
+    }
+
+    /// A part as a picture, four bytes a pixel.
+    fn toned(&self, part: &PassRecord, targets: &Targets) -> Result<wgpu::Buffer, GpuError> {
+        let job = self.buffer("pass", &[*part], wgpu::BufferUsages::UNIFORM)?;
+        let [width, height] = part.part;
+        let picture = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 4 * u64::from(width) * u64::from(height),
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        let resources =
+            [job.as_entire_binding(), targets.film.as_entire_binding(), picture.as_entire_binding()];
+        let group = self.bound(&self.pipelines.tone, resources);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        compute(&mut encoder, &self.pipelines.tone, &group, part.part);
+        self.queue.submit([encoder.finish()]);
+        Ok(picture)
+    }
+
+    fn bound<const N: usize>(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        resources: [wgpu::BindingResource<'_>; N],
+    ) -> wgpu::BindGroup {
+        let mut binding = 0;
+        let entries = resources.map(|resource| {
+            binding += 1;
+            wgpu::BindGroupEntry { binding: binding - 1, resource }
+        });
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        })
+    }
+
+    fn upload(&self, load: &Load) -> Result<Uploaded, GpuError> {
+        let storage = wgpu::BufferUsages::STORAGE;
+        let polygons = !load.vertices.is_empty();
+        let corners = load.figures.len() as u64 * if polygons { 3 } else { 6 };
+        let most = u64::from(u32::MAX);
+        let too_large =
+            GpuError::TooLarge { adapter: self.name.clone(), what: "triangles", bytes: corners, most };
+        Ok(Uploaded {
+            skies: self.buffer("bodies", &load.skies, storage)?,
+            shapes: self.buffer("triangles", &load.shapes, storage)?,
+            figures: self.buffer("triangles", &load.figures, storage)?,
+            vertices: self.buffer("vertices", &load.vertices, storage)?,
+            faces: self.buffer("triangles", &load.faces, storage)?,
+            materials: self.buffer("materials", &load.looks.materials, storage)?,
+            nodes: self.buffer("tables of colours", &load.looks.nodes, storage)?,
+            words: self.buffer("colours", &load.looks.words, storage)?,
+            corners: u32::try_from(corners).map_err(|_| too_large)?,
+            polygons,
+        })
+    }
+
+    /// With these contents; never quite empty, which shaders could not read.
+    fn buffer<T: Pod>(
+        &self,
+        what: &'static str,
+        contents: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let bytes: &[u8] = bytemuck::cast_slice(contents);
+        let size = (bytes.len() as u64).max(std::mem::size_of::<T>() as u64).max(16);
+        let limits = self.device.limits();
+        let most = u64::from(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size);
+        if size > most {
+            return Err(GpuError::TooLarge { adapter: self.name.clone(), what, bytes: size, most });
+        }
+        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: true };
+        let buffer = self.device.create_buffer(&descriptor);
+        // Where there is no memory, the error is told by the scope around.
+        if let Ok(mut mapped) = buffer.get_mapped_range_mut(..bytes.len() as u64) {
+            mapped.copy_from_slice(bytes);
+        }
+        buffer.unmap();
+        Ok(buffer)
+    }
+
+    fn targets(&self, [width, height]: [u32; 2]) -> Targets {
+        let texture = |format, more| {
+            let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+                label: None,
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | more,
+                view_formats: &[],
+            });
+            texture.create_view(&Default::default())
+        };
+        Targets {
+            seen: texture(SEEN, wgpu::TextureUsages::TEXTURE_BINDING),
+            depth: texture(DEPTH, wgpu::TextureUsages::empty()),
+            film: self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: std::mem::size_of::<PixelRecord>() as u64 * u64::from(width) * u64::from(height),
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
+        }
+    }
+
+    /// All of a buffer, once everything before is drawn.
+    fn read_back(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: buffer.size(),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+        self.queue.submit([encoder.finish()]);
+        let mapped = Arc::new(OnceLock::new());
+        let told = mapped.clone();
+        copy.map_async(wgpu::MapMode::Read, .., move |done| {
+            let _ = told.set(done);
+        });
+        let refused = |why: String| GpuError::Refused { adapter: self.name.clone(), why };
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| refused(one_line(&e)))?;
+        match mapped.get() {
+            Some(Ok(())) => {
+                let bytes = copy.get_mapped_range(..).map_err(|e| refused(one_line(&e)))?;
+                Ok(bytes.to_vec())
+            }
+            _ => Err(refused("what was drawn cannot be read back".into())),
+        }
+    }
+
+    /// Does something with what goes wrong on the device as an error.
+    fn checked<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+        let guard = Guard::new(&self.device);
+        let done = work();
+        guard.finish(&self.name, &self.lost)?;
+        done
+    }
+}
+
+/// Catches what goes wrong on a device, which otherwise would be a panic.
+struct Guard(Vec<wgpu::ErrorScopeGuard>);
+
+impl Guard {
+    fn new(device: &wgpu::Device) -> Self {
+        use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
+        Self([Validation, Internal, OutOfMemory].map(|filter| device.push_error_scope(filter)).into())
+    }
+
+    fn finish(mut self, adapter: &str, lost: &OnceLock<String>) -> Result<(), GpuError> {
+        let mut fault = None;
+        // The innermost first.
+        while let Some(scope) = self.0.pop() {
+            fault = wait(scope.pop()).or(fault);
+        }
+        let adapter = adapter.to_owned();
+        if let Some(why) = lost.get() {
+            return Err(GpuError::Lost { adapter, why: why.clone() });
+        }
+        match fault {
+            None => Ok(()),
+            Some(wgpu::Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory { adapter }),
+            Some(error) => Err(GpuError::Refused { adapter, why: one_line(&error) }),
+        }
+    }
+}
+
+/// What an error says, on one line.
+fn one_line(error: &impl std::fmt::Display) -> String {
+    error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// What all samples and parts have in common.
+fn pass(lens: &Lens, coloring: Coloring, unit: f64) -> PassRecord {
+    PassRecord {
+        middle: lens.middle().as_vec2().to_array(),
+        inverse_focal: lens.focal().recip().as_vec2().to_array(),
+        projection: match lens.projection() {
+            Projection::Pinhole => 0,
+            Projection::Fisheye => 1,
+            Projection::Panorama => 2,
+        },
+        coloring: match coloring {
+            Coloring::Spectral => 0,
+            Coloring::Flat => 1,
+            Coloring::Bolometric => 2,
+            Coloring::Geometry => 3,
+            Coloring::Doppler => 4,
+        },
+        unit: unit as f32,
+        exposure: 1.0,
+        ..PassRecord::default()
+    }
+}
+
+fn compute(
+    encoder: &mut wgpu::CommandEncoder,
+    pipeline: &wgpu::ComputePipeline,
+    group: &wgpu::BindGroup,
+    [width, height]: [u32; 2],
+) {
+    let mut pass = encoder.begin_compute_pass(&Default::default());
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.dispatch_workgroups(width.div_ceil(GROUP), height.div_ceil(GROUP), 1);
+}
+
+impl Pipelines {
+    fn new(device: &wgpu::Device) -> Self {
+        let [raster, develop, tone] = shaders().map(|(name, source)| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(name),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
+            })
+        });
+        let compute = |module, entry| {
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: None,
+                module,
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                cache: None,
+            })
+        };
+        let draw = |vertex, fragment| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(vertex),
+                layout: None,
+                vertex: wgpu::VertexState {
+                    module: &raster,
+                    entry_point: Some(vertex),
+                    compilation_options: Default::default(),
+                    buffers: &[],
+                },
+                primitive: Default::default(),
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Greater),
+                    stencil: Default::default(),
+                    bias: Default::default(),
+                }),
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &raster,
+                    entry_point: Some(fragment),
+                    compilation_options: Default::default(),
+                    targets: &[Some(SEEN.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        Self {
+            quads: draw("quad", "inside_quad"),
+            polygons: draw("polygon", "inside_polygon"),
+            develop: compute(&develop, "develop"),
+            tone: compute(&tone, "develop_to_picture"),
+        }
+    }
+}
