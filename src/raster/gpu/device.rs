@@ -6,6 +6,7 @@ use crate::film::{Film, Samples};
 use crate::scene::{Lens, Projection};
 use crate::tone::{Development, Tone};
 use bytemuck::Pod;
+use rayon::prelude::*;
 use std::future::Future;
 use std::pin::pin;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -19,6 +20,8 @@ pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
     pipelines: Pipelines,
+    /// Of the picture drawn last, for the next; held while one is drawn.
+    targets: Mutex<Option<Targets>>,
     /// Why the device is lost, once it is.
     lost: Arc<OnceLock<String>>,
 }
@@ -52,10 +55,16 @@ fn wait<T>(future: impl Future<Output = T>) -> T {
 }
 
 /// What a part of a picture is drawn on.
+#[derive(Debug)]
 struct Targets {
+    size: [u32; 2],
     seen: wgpu::TextureView,
     depth: wgpu::TextureView,
     film: wgpu::Buffer,
+    /// As four bytes a pixel.
+    picture: wgpu::Buffer,
+    /// What either is read back through.
+    copy: wgpu::Buffer,
 }
 
 /// What shaders read of a scene, where they read it.
@@ -113,7 +122,7 @@ impl Gpu {
         let guarded = Guard::new(&device);
         let pipelines = Pipelines::new(&device);
         guarded.finish(&name, &lost)?;
-        Ok(Self { name, is_hardware, device, queue, pipelines, lost })
+        Ok(Self { name, is_hardware, device, queue, pipelines, targets: Mutex::default(), lost })
     }
 
     /// The one that all of a program share; opened when it is first asked for, and again if it was lost.
@@ -136,6 +145,12 @@ impl Gpu {
         &self.name
     }
 
+    /// Gives the device back: whatever is asked of it from now on is an error.
+    pub fn close(&self) {
+        self.device.destroy();
+        let _ = self.lost.set("it was closed".to_owned());
+    }
+
     /// Whether it is more than a program on the CPU.
     pub fn is_hardware(&self) -> bool {
         self.is_hardware
@@ -152,22 +167,21 @@ impl Gpu {
     ) -> Result<(), GpuError> {
         film.clear(lens.width(), lens.height());
         let pass = pass(lens, coloring, load.unit);
-        let width = lens.width() as usize;
         self.in_parts(load, &pass, samples, lens, |part, targets| {
-            let bytes = self.read_back(&targets.film)?;
-            let pixels: &[PixelRecord] = bytemuck::cast_slice(&bytes);
-            for (line, pixels) in pixels.chunks(part.part[0] as usize).take(part.part[1] as usize).enumerate()
-            {
-                let start = (part.corner[1] as usize + line) * width + part.corner[0] as usize;
-                for (i, pixel) in (start..).zip(pixels) {
-                    film.color[i] = pixel.color;
-                    film.distance[i] = pixel.distance;
-                    film.doppler[i] = pixel.doppler;
-                    film.body[i] = pixel.body;
-                    film.face[i] = pixel.face;
-                }
-            }
-            Ok(())
+            let [left, top] = part.corner.map(|c| c as usize);
+            let [width, height] = part.part.map(|c| c as usize);
+            self.read_back(targets, &targets.film, width * height, |pixels: &[PixelRecord]| {
+                let rows = film.bands(1).skip(top).take(height).enumerate();
+                rows.for_each(|(line, rows)| {
+                    for (i, pixel) in (left..).zip(&pixels[line * width..(line + 1) * width]) {
+                        rows.color[i] = pixel.color;
+                        rows.distance[i] = pixel.distance;
+                        rows.doppler[i] = pixel.doppler;
+                        rows.body[i] = pixel.body;
+                        rows.face[i] = pixel.face;
+                    }
+                });
+            })
         })
     }
 
@@ -187,19 +201,20 @@ impl Gpu {
             Tone::Log => 2,
         };
         let pass = PassRecord { exposure, tone, ..pass(lens, coloring, load.unit) };
-        let width = lens.width() as usize;
-        let mut picture = vec![0; 3 * width * lens.height() as usize];
+        let whole = lens.width() as usize;
+        let mut picture = vec![0; 3 * whole * lens.height() as usize];
         self.in_parts(load, &pass, samples, lens, |part, targets| {
-            let bytes = self.read_back(&self.toned(part, targets)?)?;
-            for (line, pixels) in
-                bytes.chunks(4 * part.part[0] as usize).take(part.part[1] as usize).enumerate()
-            {
-                let start = (part.corner[1] as usize + line) * width + part.corner[0] as usize;
-                for (to, from) in picture[3 * start..].chunks_exact_mut(3).zip(pixels.chunks_exact(4)) {
-                    to.copy_from_slice(&from[..3]);
+            self.tone(part, targets)?;
+            let [left, top] = part.corner.map(|c| c as usize);
+            let [width, height] = part.part.map(|c| c as usize);
+            self.read_back(targets, &targets.picture, width * height, |pixels: &[[u8; 4]]| {
+                for (line, pixels) in pixels.chunks(width).enumerate() {
+                    let row = &mut picture[3 * ((top + line) * whole + left)..][..3 * width];
+                    for (to, from) in row.chunks_exact_mut(3).zip(pixels) {
+                        to.copy_from_slice(&from[..3]);
+                    }
                 }
-            }
-            Ok(())
+            })
         })?;
         Ok(picture)
     }
@@ -216,7 +231,11 @@ impl Gpu {
         let uploaded = self.checked(|| self.upload(load))?;
         let size = [lens.width(), lens.height()];
         let largest = size.map(|side| side.min(PART));
-        let targets = self.checked(|| Ok(self.targets(largest)))?;
+        let mut kept = self.targets.lock().unwrap_or_else(PoisonError::into_inner);
+        let targets = match kept.take().filter(|targets| targets.size == largest) {
+            Some(targets) => targets,
+            None => self.checked(|| Ok(self.targets(largest)))?,
+        };
         for y in (0..size[1]).step_by(PART as usize) {
             for x in (0..size[0]).step_by(PART as usize) {
                 let part = [(size[0] - x).min(PART), (size[1] - y).min(PART)];
@@ -227,6 +246,7 @@ impl Gpu {
                 })?;
             }
         }
+        *kept = Some(targets);
         Ok(())
     }
 
@@ -327,23 +347,15 @@ impl Gpu {
         pass.draw(0..uploaded.corners, 0..1);
     }
 
-    /// A part as a picture, four bytes a pixel.
-    fn toned(&self, part: &PassRecord, targets: &Targets) -> Result<wgpu::Buffer, GpuError> {
+    /// A part's film to its picture.
+    fn tone(&self, part: &PassRecord, targets: &Targets) -> Result<(), GpuError> {
         let job = self.buffer("pass", &[*part], wgpu::BufferUsages::UNIFORM)?;
-        let [width, height] = part.part;
-        let picture = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: 4 * u64::from(width) * u64::from(height),
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        });
-        let resources =
-            [job.as_entire_binding(), targets.film.as_entire_binding(), picture.as_entire_binding()];
+        let resources = [&job, &targets.film, &targets.picture].map(|buffer| buffer.as_entire_binding());
         let group = self.bound(&self.pipelines.tone, resources);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         compute(&mut encoder, &self.pipelines.tone, &group, part.part);
         self.queue.submit([encoder.finish()]);
-        Ok(picture)
+        Ok(())
     }
 
     fn bound<const N: usize>(
@@ -422,43 +434,49 @@ impl Gpu {
             });
             texture.create_view(&Default::default())
         };
+        let pixels = u64::from(width) * u64::from(height);
+        let buffer = |bytes: usize, usage| {
+            let size = bytes as u64 * pixels;
+            let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+            self.device.create_buffer(&descriptor)
+        };
+        let drawn = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        let film = std::mem::size_of::<PixelRecord>();
         Targets {
+            size: [width, height],
             seen: texture(SEEN, wgpu::TextureUsages::TEXTURE_BINDING),
             depth: texture(DEPTH, wgpu::TextureUsages::empty()),
-            film: self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
-                size: std::mem::size_of::<PixelRecord>() as u64 * u64::from(width) * u64::from(height),
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            }),
+            film: buffer(film, drawn),
+            picture: buffer(4, drawn),
+            copy: buffer(film, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ),
         }
     }
 
-    /// All of a buffer, once everything before is drawn.
-    fn read_back(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
-        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: buffer.size(),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+    /// So many of what a buffer has, once everything before is drawn.
+    fn read_back<T: Pod>(
+        &self,
+        targets: &Targets,
+        buffer: &wgpu::Buffer,
+        count: usize,
+        take: impl FnOnce(&[T]),
+    ) -> Result<(), GpuError> {
+        let (copy, bytes) = (&targets.copy, (count * std::mem::size_of::<T>()) as u64);
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+        encoder.copy_buffer_to_buffer(buffer, 0, copy, 0, bytes);
         self.queue.submit([encoder.finish()]);
         let mapped = Arc::new(OnceLock::new());
         let told = mapped.clone();
-        copy.map_async(wgpu::MapMode::Read, .., move |done| {
+        copy.map_async(wgpu::MapMode::Read, ..bytes, move |done| {
             let _ = told.set(done);
         });
         let refused = |why: String| GpuError::Refused { adapter: self.name.clone(), why };
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| refused(one_line(&e)))?;
-        match mapped.get() {
-            Some(Ok(())) => {
-                let bytes = copy.get_mapped_range(..).map_err(|e| refused(one_line(&e)))?;
-                Ok(bytes.to_vec())
-            }
-            _ => Err(refused("what was drawn cannot be read back".into())),
+        if !matches!(mapped.get(), Some(Ok(()))) {
+            return Err(refused("what was drawn cannot be read back".into()));
         }
+        take(bytemuck::cast_slice(&copy.get_mapped_range(..bytes).map_err(|e| refused(one_line(&e)))?));
+        copy.unmap();
+        Ok(())
     }
 
     /// Does something with what goes wrong on the device as an error.

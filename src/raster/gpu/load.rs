@@ -93,10 +93,10 @@ impl Load {
                     let places = subject.mesh.triangles[number].map(|v| seen[v as usize]);
                     let one_sided = subject.mesh.is_one_sided(number);
                     let Some(points) = hull(subject.map, axis, offsets, places, one_sided) else { continue };
-                    let shape = part.shapes.len() as u32;
+                    let index = part.shapes.len() as u32;
                     let before = part.figures.len();
                     part.figures
-                        .extend(bounder.of_hull(&points).into_iter().flatten().map(|r| quad(r, shape)));
+                        .extend(bounder.of_hull(&points).into_iter().flatten().map(|r| quad(r, index)));
                     if part.figures.len() == before {
                         continue;
                     }
@@ -105,8 +105,8 @@ impl Load {
                         continue;
                     };
                     looks.finish(&mut face);
-                    part.shapes.push(shape);
-                    part.faces.push(face);
+                    part.shapes.push(ShapeRecord { face: index, ..shape });
+                    part.faces.push(FaceRecord { shape: index, ..face });
                 }
                 part
             };
