@@ -121,6 +121,8 @@ pub fn not_on_gpu(
         lens.projection() != Projection::Pinhole && lens.focal().max_element() > MOST_FOCAL_ON_GPU
     };
     let colored = coloring != Coloring::Doppler;
+    let is_lit =
+        |body: &Body| body.mesh.materials.is_empty() || body.mesh.materials.iter().any(|m| m.is_lit(true));
     let smooth = |body: &Body| {
         !body.mesh.normals.is_empty() && body.mesh.materials.iter().any(|m| m.law != EmissionLaw::Isotropic)
     };
@@ -128,9 +130,7 @@ pub fn not_on_gpu(
         Some("rays are traced on the CPU")
     } else if scene.sky.is_some() && method == Method::Exact {
         Some("a sky is drawn on the CPU")
-    } else if colored && !scene.lights.is_empty() && materials().any(|m| m.is_lit(true)) {
-        Some("what lights shine on is drawn on the CPU")
-    } else if colored && !scene.lights.is_empty() && bodies().any(|body| body.mesh.materials.is_empty()) {
+    } else if colored && !scene.lights.is_empty() && bodies().any(is_lit) {
         Some("what lights shine on is drawn on the CPU")
     } else if colored && materials().any(Material::is_textured) {
         Some("textures are drawn on the CPU")

@@ -278,8 +278,10 @@ pub fn render_again(
     options: &Options,
     prepared: &Prepared,
     film: &mut Film,
-    mut step: impl FnMut(Step) + Send,
+    step: impl FnMut(Step) + Send,
 ) -> Result<Report, RenderError> {
+    #[cfg(feature = "gpu")]
+    let mut step = step;
     #[cfg(feature = "gpu")]
     let fault = match &prepared.gpu {
         None => None,

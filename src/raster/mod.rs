@@ -4,6 +4,8 @@
 //! that crosses the camera plane or surrounds the camera needs no clipping, and under a fisheye or a panorama
 //! its edges are as straight in space as under a pinhole. Depth is apparent depth of all bodies in the one
 //! camera frame, whatever their velocities. Work is cut into bands of rows, drawn on all cores.
+//!
+//! `gpu`, a feature, draws the same on a graphics processor, and exact shading, too.
 
 mod band;
 mod bins;

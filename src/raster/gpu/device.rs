@@ -406,7 +406,7 @@ impl Gpu {
         let bytes: &[u8] = bytemuck::cast_slice(contents);
         let size = (bytes.len() as u64).max(std::mem::size_of::<T>() as u64).max(16);
         let limits = self.device.limits();
-        let most = u64::from(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size);
+        let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         if size > most {
             return Err(GpuError::TooLarge { adapter: self.name.clone(), what, bytes: size, most });
         }
