@@ -54,17 +54,35 @@ struct Difference {
     color: f64,
 }
 
+/// A pixel and those around it.
+fn around(film: &Film, i: usize) -> Vec<usize> {
+    let (width, height) = (film.width as usize, film.height as usize);
+    let (x, y) = (i % width, i / width);
+    let columns = x.saturating_sub(1)..(x + 2).min(width);
+    let rows = y.saturating_sub(1)..(y + 2).min(height);
+    rows.flat_map(|y| columns.clone().map(move |x| y * width + x)).collect()
+}
+
+fn sees(film: &Film, i: usize) -> (i32, i32) {
+    (film.body[i], film.face[i])
+}
+
+/// Light of pixels beside which something else is seen: of each, the brightest around.
+fn outlines(film: &Film) -> f64 {
+    let light = |i: usize| film.color[i].iter().map(|v| f64::from(*v)).sum::<f64>();
+    let brightest = |i: usize| {
+        let around = around(film, i);
+        let clear = around.iter().all(|j| sees(film, *j) == sees(film, i));
+        if clear { 0.0 } else { around.into_iter().map(light).fold(0.0, f64::max) }
+    };
+    (0..film.color.len()).map(brightest).sum()
+}
+
 impl Difference {
     fn of([cpu, gpu]: &[Film; 2]) -> Self {
-        let (width, height) = (cpu.width as usize, cpu.height as usize);
-        let sees = |film: &Film, i: usize| (film.body[i], film.face[i]);
         let mut difference = Self::default();
-        for i in 0..width * height {
-            let (x, y) = (i % width, i / width);
-            let columns = x.saturating_sub(1)..(x + 2).min(width);
-            let around = (y.saturating_sub(1)..(y + 2).min(height))
-                .flat_map(|y| columns.clone().map(move |x| y * width + x));
-            let around: Vec<_> = around.map(|j| sees(cpu, j)).collect();
+        for i in 0..cpu.body.len() {
+            let around: Vec<_> = around(cpu, i).into_iter().map(|j| sees(cpu, j)).collect();
             difference.beyond += usize::from(!around.contains(&sees(gpu, i)));
             if around.iter().any(|other| *other != sees(cpu, i)) {
                 continue;
@@ -199,8 +217,10 @@ fn samples() {
             |i: usize| (0..3).map(|k| f64::from((cpu.color[i][k] - gpu.color[i][k]).abs())).sum::<f64>();
         let whole: f64 = cpu.color.iter().flatten().map(|v| f64::from(*v)).sum();
         let difference: f64 = (0..cpu.color.len()).map(off).sum();
-        // Of a sample in a pixel of an outline now and then.
-        assert!(difference < 1e-3 * whole, "{method} {difference} {whole}");
+        // Uncut, a sample of an outline's pixels now and then. A pinhole's polygons are drawn by what the device has of places
+        // within a pixel, to a 256th: so much of either side of what lies on an outline.
+        let most = if method == Method::Exact { 1e-3 * whole } else { 2.0 / 256.0 * outlines(cpu) };
+        assert!(difference < most, "{method} {difference} {most} {whole}");
         assert_eq!(Difference::of(&films).other, 0);
     }
 }
@@ -242,6 +262,26 @@ fn nothing_and_much() {
     scene.view.size = [2500, 2100];
     let difference = check(&scene, &Options::default(), "large");
     assert!(difference.beyond < 10, "{difference:?}");
+}
+
+/// Fields of which a whole picture is a few roundings of a unit vector wide.
+#[test]
+#[ignore = "needs a Vulkan driver, such as Debian's mesa-vulkan-drivers"]
+fn narrow_fields() {
+    for (name, fov) in [("lattice", 0.5), ("lattice", 1e-3), ("gate", 0.05), ("gate", 1e-5)] {
+        for speed in [1e-6, 2.0, 1e3] {
+            let mut scene = shipped(name);
+            scene.set_speed(Speed::Along(speed)).unwrap();
+            scene.view.size = [160, 90];
+            scene.view.fov_deg = Some(fov);
+            if scene.camera().is_err() {
+                continue;
+            }
+            for method in [Method::Exact, Method::Apparent] {
+                check(&scene, &Options { method, ..Options::default() }, &format!("{method} {fov} {speed}"));
+            }
+        }
+    }
 }
 
 /// Two runs are one to the bit.
