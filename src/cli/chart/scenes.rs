@@ -251,7 +251,7 @@ fn row(case: &Case, point: &SweepPoint, is_best: [bool; 3]) -> [Value; COLUMNS.l
         json!(height),
         json!(point.way.series),
         json!(method.to_string()),
-        json!(is_apparent.then(|| summary::raster(*raster))),
+        json!(is_apparent.then(|| summary::raster(*raster, false))),
         json!(is_cut.then_some(tolerance)),
         json!(samples),
         json!(summary::doppler_at(*doppler_at)),
