@@ -64,7 +64,7 @@ pub fn is_of_polygons(scene: &Scene) -> bool {
 pub const MOST_GAMMA: f64 = 1e5;
 
 /// The greatest γ with which a body and the camera, as it is before a moment is chosen, move relative to each other.
-fn greatest_gamma(scene: &Scene) -> f64 {
+pub fn greatest_gamma(scene: &Scene) -> f64 {
     let camera = &scene.view.celerity;
     let relative = |body: &Body| {
         let body = &body.motion.celerity;
@@ -150,8 +150,13 @@ pub fn not_on_gpu(
 /// Opening a graphics processor takes as long as the CPU takes for so many samples.
 const OPENING: u64 = 1 << 25;
 
+/// How many samples pictures by these cameras have in all.
+pub fn samples_to_draw(cameras: &[&Camera], samples: u32) -> u64 {
+    let pixels = |camera: &&Camera| u64::from(camera.lens.width()) * u64::from(camera.lens.height());
+    cameras.iter().map(pixels).sum::<u64>().saturating_mul(samples.into())
+}
+
 /// Whether so many pictures by these cameras are enough work to look for a graphics processor.
 pub fn is_worth_a_gpu(cameras: &[&Camera], samples: u32) -> bool {
-    let pixels = |camera: &&Camera| u64::from(camera.lens.width()) * u64::from(camera.lens.height());
-    cameras.iter().map(pixels).sum::<u64>().saturating_mul(samples.into()) > OPENING
+    samples_to_draw(cameras, samples) > OPENING
 }

@@ -138,6 +138,26 @@ impl Options {
     }
 }
 
+/// A graphics processor that pictures can be drawn on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Adapter {
+    /// What it calls itself.
+    pub name: String,
+    /// Whether it is more than a program on the CPU.
+    pub is_hardware: bool,
+}
+
+impl Adapter {
+    /// The one there is.
+    ///
+    /// # Errors
+    /// Why there is none, for people to read.
+    pub fn find() -> Result<Self, String> {
+        let device = open().map_err(|e| e.to_string())?;
+        Ok(Self { name: device.name().to_owned(), is_hardware: device.is_hardware() })
+    }
+}
+
 #[cfg(feature = "gpu")]
 type Device = Arc<Gpu>;
 
@@ -154,6 +174,10 @@ enum Device {}
 #[cfg(not(feature = "gpu"))]
 impl Device {
     fn is_hardware(&self) -> bool {
+        match *self {}
+    }
+
+    fn name(&self) -> &str {
         match *self {}
     }
 }

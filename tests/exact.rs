@@ -4,7 +4,6 @@ use glam::DVec3;
 use terrell::color::Coloring;
 use terrell::film::{Film, Samples};
 use terrell::geodesic::{Celerity, Event};
-use terrell::plan::{Method, cheapest, is_of_polygons};
 use terrell::relativity::Motion;
 use terrell::render::Options;
 use terrell::scene::{Aim, Body, Mesh, Projection, Scene, Speed, View, builtin_scene, builtin_scenes};
@@ -103,32 +102,4 @@ fn a_large_mesh() {
         let [different, shown] = differ(&scene, 1);
         assert!(different == 0 && shown > 5000, "{different} {shown}");
     }
-}
-
-/// Scene → plan: no more than it needs.
-#[test]
-fn plans() {
-    let of = |name: &str, coloring| cheapest(&shipped(name), coloring);
-    for (name, coloring, method, why) in [
-        ("cube", Coloring::Spectral, Method::Exact, "nothing casts shadows"),
-        ("street", Coloring::Flat, Method::Exact, "nothing casts shadows"),
-        ("shadow", Coloring::Spectral, Method::Exact, "shadows need rays from what is seen only"),
-        ("sunlit", Coloring::Spectral, Method::Exact, "shadows need rays from what is seen only"),
-        ("shadow", Coloring::Doppler, Method::Exact, "the Doppler factor needs no light"),
-        ("box", Coloring::Spectral, Method::Trace, "surfaces light each other"),
-        ("box", Coloring::Doppler, Method::Exact, "the Doppler factor needs no light"),
-        ("blackhole", Coloring::Spectral, Method::Trace, "spacetime is curved"),
-        ("blackhole", Coloring::Doppler, Method::Trace, "spacetime is curved"),
-    ] {
-        assert_eq!(of(name, coloring), (method, why), "{name} {coloring}");
-    }
-    // Beyond what lines of sight have digits for.
-    for (name, gamma, expected) in
-        [("cube", 9e4, Method::Exact), ("cube", 2e5, Method::Apparent), ("shadow", 2e5, Method::Exact)]
-    {
-        let mut scene = shipped(name);
-        scene.set_speed(Speed::Along(gamma)).unwrap();
-        assert_eq!(cheapest(&scene, Coloring::Spectral).0, expected, "{name} {gamma}");
-    }
-    assert!(!is_of_polygons(&shipped("shadow")) && is_of_polygons(&shipped("gate")));
 }

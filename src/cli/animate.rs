@@ -1,4 +1,5 @@
 use super::drawing::DrawingFlags;
+use super::explain::{self, ExplainFlag};
 use super::look::LookFlags;
 use super::progress::progress_bar;
 use super::report::{ReportFlags, check_target};
@@ -60,6 +61,8 @@ pub struct Animate {
     #[command(flatten)]
     drawing: DrawingFlags,
     #[command(flatten)]
+    explain: ExplainFlag,
+    #[command(flatten)]
     report: ReportFlags,
 }
 
@@ -90,10 +93,27 @@ impl Target {
     }
 }
 
+/// A scene on its way to a film.
+struct Staged {
+    scene: Scene,
+    options: Options,
+    /// Why the method was chosen, if it was not asked for.
+    why: Option<&'static str>,
+    animation: Animation,
+    cameras: Vec<Camera>,
+}
+
 impl Animate {
     pub fn run(self) -> Result<(), Fault> {
         let start = Instant::now();
         let options = self.look.options()?;
+        if self.explain.is_asked() {
+            for scene in &self.scenes {
+                let Staged { scene, options, why, cameras, .. } = self.stage(scene, &options)?;
+                explain::tell(&scene, &cameras.iter().collect::<Vec<_>>(), &options, why, &self.report)?;
+            }
+            return Ok(());
+        }
         let takes =
             self.scenes.iter().map(|scene| self.take(scene, &options)).collect::<Result<Vec<_>, _>>()?;
         let size = takes[0].size();
@@ -153,14 +173,15 @@ impl Animate {
         Ok(())
     }
 
-    fn take(&self, source: &str, options: &Options) -> Result<Take, Fault> {
+    /// A scene and its cameras, before anything is made of them.
+    fn stage(&self, source: &str, options: &Options) -> Result<Staged, Fault> {
         let speed = match self.look.scene.velocity.speed()? {
             Some(Speed::Along(0.0)) => Some(Speed::Along(STANDARD_BETA)),
             speed => speed,
         };
         let mut scene = self.look.scene.open(source, speed, |view| self.look.set_lens(view))?;
         let mut options = options.clone();
-        self.look.choose(&mut options, &scene)?;
+        let why = self.look.choose(&mut options, &scene)?;
         scene.notes.extend(summary::light_notes(&scene, &options));
         scene.notes.extend(summary::digit_note(&scene, options.method));
         scene.notes.extend(scene.horizon_notes());
@@ -179,6 +200,11 @@ impl Animate {
         for camera in &cameras {
             scene.eye(camera)?;
         }
+        Ok(Staged { scene, options, why, animation, cameras })
+    }
+
+    fn take(&self, source: &str, options: &Options) -> Result<Take, Fault> {
+        let Staged { scene, options, animation, cameras, .. } = self.stage(source, options)?;
         let panel = |mut scene: Scene, cameras: Vec<Camera>| -> Result<Panel, Fault> {
             let overlay = self.drawing.overlay(&scene)?;
             let prepared = options.prepare(&scene, &cameras)?;

@@ -5,6 +5,7 @@ mod chart;
 mod compare;
 mod completions;
 mod drawing;
+mod explain;
 mod locate;
 mod look;
 mod progress;
@@ -34,6 +35,7 @@ struct Cli {
 const EXAMPLES: &str = "Examples:
   terrell render cube                              the cube of Fig. 2, to cube.png
   terrell render statue.glb --beta 0.9             your own mesh, passing by at 0.9c
+  terrell render shadow --explain                  which method a scene needs, and why
   terrell animate gate -o gate.mp4                 flying through a gate
   terrell render gate --color doppler -o gate.exr  float channels, Doppler factor included
   terrell transform statue.glb --beta 0.9          its apparent shape, for other programs

@@ -1,5 +1,6 @@
 use super::Fault;
 use super::drawing::{self, DrawingFlags};
+use super::explain::{self, ExplainFlag};
 use super::look::{LookFlags, MomentFlags};
 use super::report::{ReportFlags, check_target};
 use super::summary;
@@ -27,6 +28,7 @@ use terrell::tone::Development;
   terrell render statue.glb --beta 0.99 --size 1920x1080 --samples 9
   terrell render gate --camera panorama --size 2000x1000 --color doppler
   terrell render lattice --edges --axes --scale-bar --caption \"β = {beta}, γ = {gamma}\"
+  terrell render shadow --explain
   terrell render street --when \"nearest tram\" -o street.exr --json street.json")]
 pub struct Render {
     /// Scene: a name, a .toml file or a mesh
@@ -41,6 +43,8 @@ pub struct Render {
     #[command(flatten)]
     drawing: DrawingFlags,
     #[command(flatten)]
+    explain: ExplainFlag,
+    #[command(flatten)]
     report: ReportFlags,
 }
 
@@ -53,6 +57,9 @@ impl Render {
         let camera = scene.camera()?;
         // Better known before the work than after.
         scene.eye(&camera)?;
+        if self.explain.is_asked() {
+            return explain::tell(&scene, &[&camera], &options, why, &self.report);
+        }
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
         Format::of(&output)?;
         check_target(&output)?;

@@ -135,8 +135,13 @@ impl Tracer {
     /// few or pictures many, it is quicker to go through one. Either way it sees just what rays see. Paths are not for it, nor
     /// is curved spacetime.
     pub fn exact(scene: &Scene, pictures: usize) -> Self {
+        if Self::is_listed(scene, pictures) { Self::listing(scene) } else { Self::new(scene) }
+    }
+
+    /// Whether [`exact`](Self::exact) lists triangles for so many pictures of a scene.
+    pub fn is_listed(scene: &Scene, pictures: usize) -> bool {
         let triangles: usize = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
-        if triangles < FEW || pictures > MANY { Self::new(scene) } else { Self::listing(scene) }
+        triangles >= FEW && pictures <= MANY
     }
 
     /// As [`exact`](Self::exact), however few triangles or many pictures there are.

@@ -1,0 +1,208 @@
+//! What a scene needs and why, told before anything is drawn.
+
+use crate::color::Coloring;
+use crate::light::has_shadows;
+use crate::plan::{
+    MOST_GAMMA, Method, greatest_gamma, has_reflections, is_worth_a_gpu, not_on_gpu, samples_to_draw,
+};
+use crate::render::{Adapter, Options, Raster};
+use crate::scene::{Camera, Scene};
+use crate::trace::Tracer;
+use std::fmt::{Display, Formatter};
+
+/// A plan and its reasons: what is in a scene, as far as it decides, and what speaks for and against each way to draw it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explanation {
+    /// How it is drawn.
+    pub method: Method,
+    /// By what.
+    pub device: String,
+    /// What there is: what is looked at, and what it is.
+    pub contents: Vec<(&'static str, String)>,
+    /// Every method, whether it is right, and why it is taken or not.
+    pub methods: Vec<Verdict>,
+    /// The same of what they are run on.
+    pub devices: Vec<Verdict>,
+}
+
+/// Of one way to draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// What it is called in commands.
+    pub name: &'static str,
+    /// Whether pictures by it are what is seen: exactly, or to the tolerance.
+    pub is_right: bool,
+    /// What speaks for or against it.
+    pub reason: String,
+}
+
+impl Explanation {
+    /// Of pictures by these cameras, with these options, method included. A graphics processor is looked for where drawing would
+    /// look for one.
+    pub fn new(scene: &Scene, cameras: &[&Camera], options: &Options) -> Self {
+        let subject = Subject { scene, cameras, options };
+        let devices = subject.devices();
+        let on_gpu = devices.iter().any(|device| device.name == "wgpu" && device.is_right);
+        Self {
+            method: options.method,
+            device: if on_gpu { "the GPU" } else { "the CPU" }.to_owned(),
+            contents: subject.contents(),
+            methods: [Method::Exact, Method::Apparent, Method::Trace].map(|m| subject.method(m)).into(),
+            devices,
+        }
+    }
+}
+
+/// What is explained.
+struct Subject<'a> {
+    scene: &'a Scene,
+    cameras: &'a [&'a Camera],
+    options: &'a Options,
+}
+
+impl Subject<'_> {
+    fn contents(&self) -> Vec<(&'static str, String)> {
+        let Self { scene, cameras, options } = self;
+        let triangles: usize = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
+        let yes = |is: bool, yes: &str, no: &str| if is { yes } else { no }.to_owned();
+        let shadows = match (scene.lights.len(), has_shadows(scene)) {
+            (0, _) => "none".to_owned(),
+            (n, true) => format!("{n}; with shadows"),
+            (n, false) => format!("{n}; nothing casts shadows"),
+        };
+        let size = cameras.first().map_or([0; 2], |c| [c.lens.width(), c.lens.height()]);
+        let pictures = match cameras.len() {
+            1 => "1 picture".to_owned(),
+            n => format!("{n} pictures"),
+        };
+        vec![
+            ("spacetime", scene.spacetime.to_string()),
+            ("bodies", format!("{}, {triangles} triangles", scene.bodies.len())),
+            ("motion", format!("γ up to {:.5} between bodies and camera", greatest_gamma(scene))),
+            ("lights", shadows),
+            ("reflections", yes(has_reflections(scene), "surfaces light each other", "none")),
+            ("sky", yes(scene.sky.is_some(), "yes", "none")),
+            ("colour", options.coloring.to_string()),
+            ("work", format!("{pictures} of {}x{}, samples a pixel: {}", size[0], size[1], options.samples)),
+        ]
+    }
+
+    /// What a method cannot show of the scene.
+    fn lacks(&self, method: Method) -> Vec<String> {
+        let Self { scene, options, .. } = self;
+        let lit = options.coloring != Coloring::Doppler;
+        let (curved, gamma) = (scene.spacetime.is_curved(), greatest_gamma(scene));
+        if curved {
+            return match method {
+                Method::Trace => vec![],
+                _ => vec!["light is bent, which only rays follow".into()],
+            };
+        }
+        let mut lacks = Vec::new();
+        if method != Method::Apparent && gamma > MOST_GAMMA {
+            lacks.push(format!("lines of sight lose digits above γ = {MOST_GAMMA:.0e}"));
+        }
+        if method != Method::Trace && lit && has_reflections(scene) {
+            lacks.push("it has no light of surfaces on each other".into());
+        }
+        if method == Method::Apparent && lit && has_shadows(scene) {
+            lacks.push("it has no shadows".into());
+        }
+        if method == Method::Apparent && scene.sky.is_some() {
+            lacks.push("it has no sky".into());
+        }
+        lacks
+    }
+
+    fn method(&self, method: Method) -> Verdict {
+        let Self { scene, cameras, options } = self;
+        let lacks = self.lacks(method);
+        let name = match method {
+            Method::Exact => "exact",
+            Method::Apparent => "apparent",
+            Method::Trace => "trace",
+        };
+        if !lacks.is_empty() {
+            return Verdict { name, is_right: false, reason: lacks.join("; ") };
+        }
+        let reason = match method {
+            Method::Exact => {
+                let by = match Tracer::is_listed(scene, cameras.len()) {
+                    true => "by lists of where triangles may be seen, which are many for so few pictures",
+                    false => "through boxes around triangles, which are few, or pictures many",
+                };
+                let shadows = match has_shadows(scene) && options.coloring != Coloring::Doppler {
+                    true => "; shadows by rays from what is seen",
+                    false => "",
+                };
+                format!("exact, {by}{shadows}")
+            }
+            Method::Apparent => format!(
+                "to {} px, from cutting triangles first, which exact shading does without",
+                options.tolerance
+            ),
+            Method::Trace if scene.spacetime.is_curved() => "the one that follows bent light".to_owned(),
+            Method::Trace if self.lacks(Method::Exact).is_empty() => {
+                match Tracer::is_listed(scene, cameras.len()) {
+                    true => "exact, too, but it builds boxes around all triangles first",
+                    false => "exact, too; without reflections, what exact shading does",
+                }
+                .to_owned()
+            }
+            Method::Trace => "the one that follows light from surface to surface".to_owned(),
+        };
+        Verdict { name, is_right: true, reason }
+    }
+
+    fn devices(&self) -> Vec<Verdict> {
+        let Self { scene, cameras, options } = self;
+        let samples = samples_to_draw(cameras, options.samples);
+        let verdict = |is_right, reason: String| Verdict { name: "wgpu", is_right, reason };
+        let refused = not_on_gpu(scene, cameras, options.method, options.coloring, options.doppler_at);
+        let gpu = match (refused, options.raster) {
+            (Some(reason), _) => verdict(false, reason.to_owned()),
+            (None, Raster::Cpu | Raster::Skia) => verdict(false, "not asked for".to_owned()),
+            (None, Raster::Auto) if !is_worth_a_gpu(cameras, options.samples) => verdict(
+                false,
+                format!("not looked for: {samples} samples are drawn sooner than one is opened"),
+            ),
+            (None, raster) => match Adapter::find() {
+                Err(fault) => verdict(false, fault),
+                Ok(Adapter { name, is_hardware: false }) if raster == Raster::Auto => verdict(
+                    false,
+                    format!("{name} is a program on the CPU, slower than what there is for it"),
+                ),
+                Ok(Adapter { name, .. }) => verdict(true, name),
+            },
+        };
+        let cpu = match gpu.is_right {
+            true => "right for all scenes; the graphics processor is quicker here",
+            false => "right for all scenes",
+        };
+        vec![Verdict { name: "cpu", is_right: true, reason: cpu.to_owned() }, gpu]
+    }
+}
+
+impl Display for Explanation {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "what there is")?;
+        for (name, what) in &self.contents {
+            writeln!(f, "    {name:<12} {what}")?;
+        }
+        let verdict = |verdict: &Verdict, chosen: bool| {
+            let mark = if chosen { "  > " } else { "    " };
+            let not = if verdict.is_right { "" } else { "no: " };
+            format!("{mark}{:<12} {not}{}", verdict.name, verdict.reason)
+        };
+        writeln!(f, "methods")?;
+        for method in &self.methods {
+            writeln!(f, "{}", verdict(method, method.name == self.method.to_string()))?;
+        }
+        writeln!(f, "on")?;
+        let last = self.devices.iter().rposition(|device| device.is_right);
+        for (i, device) in self.devices.iter().enumerate() {
+            writeln!(f, "{}", verdict(device, Some(i) == last))?;
+        }
+        Ok(())
+    }
+}
