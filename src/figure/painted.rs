@@ -1,6 +1,8 @@
 use super::page::{Anchor, Ink, Item, Page};
 use crate::drawing::text;
 use glam::DVec2;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform,
 };
@@ -18,6 +20,19 @@ impl Page {
         }
         let pixels = pixmap.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
         Some((width, height, pixels))
+    }
+}
+
+impl Page {
+    /// The [pixels](Self::pixels) as a PNG, as small as can be.
+    pub fn png(&self, scale: f64) -> Option<Vec<u8>> {
+        let (width, height, pixels) = self.pixels(scale)?;
+        let mut png = Vec::new();
+        // Areas of one colour are best left as they are.
+        PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::NoFilter)
+            .write_image(&pixels, width, height, ExtendedColorType::Rgb8)
+            .ok()?;
+        Some(png)
     }
 }
 

@@ -249,7 +249,7 @@ impl Sweep<'_> {
 }
 
 /// What takes longer than that in all is timed less often.
-const PATIENCE: Duration = Duration::from_secs(4);
+const PATIENCE: Duration = Duration::from_secs(3);
 
 /// What films are compared with.
 struct References {

@@ -61,10 +61,9 @@ impl Files {
                 Format::Csv => picture::prepare(path, |to| to.write_all(table.csv().as_bytes()))?,
                 Format::Json => picture::prepare(path, |to| writeln!(to, "{told:#}"))?,
                 Format::Png => {
-                    let pixels = page.pixels(SCALE);
-                    let (width, height, pixels) =
-                        pixels.ok_or("the chart is too large to be painted; write an .svg")?;
-                    picture::prepare(path, |to| picture::write_png_pixels(width, height, &pixels, to))?
+                    let png = page.png(SCALE);
+                    let png = png.ok_or("the chart is too large to be painted; write an .svg")?;
+                    picture::prepare(path, |to| to.write_all(&png))?
                 }
             })
         };

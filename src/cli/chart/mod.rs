@@ -71,7 +71,7 @@ pub struct Chart {
     /// Which series: exact, trace, apparent, painter, uncut, 'D at vertices', 'f32 vertices' [default: all]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = series)]
     methods: Vec<&'static str>,
-    /// Each is timed so often, all in turn [default: 7; of geodesics 11]
+    /// Each is timed so often, all in turn [default: 5; of geodesics 11]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     repeats: Option<u32>,
     /// Less of everything, to have a look in seconds
@@ -150,7 +150,7 @@ impl Chart {
             samples: if self.samples.is_empty() { samples.to_vec() } else { self.samples.clone() },
             reference_samples: if quick { 16 } else { 64 },
             series: self.methods.clone(),
-            repeats: self.repeats.unwrap_or(if quick { 3 } else { 7 }),
+            repeats: self.repeats.unwrap_or(if quick { 3 } else { 5 }),
         };
         scenes::chart(cases, &ways, &self.develop, self.report.quiet)
     }
