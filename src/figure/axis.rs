@@ -182,7 +182,7 @@ impl Ruler {
             [1, 2, 3, 5, 10, 20, 50].into_iter().find(|n| f64::from(*n) * room >= 34.0).unwrap_or(100);
         let written: &[i32] = match decades {
             d if d < 0.7 => &[2, 3, 4, 5, 6, 7, 8, 9],
-            d if d < 1.6 => &[2, 5],
+            d if d < 2.2 => &[2, 5],
             _ => &[],
         };
         let mut ticks = Vec::new();
