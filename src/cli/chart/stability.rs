@@ -157,7 +157,7 @@ fn said(sheets: &[Vec<Map>]) -> String {
             let taken =
                 taken.map_or("never taken".to_owned(), |worst| format!("taken, off by {worst:.0e} at most"));
             let (fail, all) = (map.failures(), map.errors.len());
-            said.push_str(&format!("  {:<38} {fail:4} of {all:4} cells fail; {taken}\n", map.title));
+            said.push_str(&format!("  {:<46} {fail:4} of {all:4} cells fail; {taken}\n", map.title));
         }
     }
     let faults: Vec<String> = sheets.iter().flatten().flat_map(Map::faults).collect();

@@ -292,6 +292,7 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
 fn words(map: &Map, usual: f64) -> String {
     let rows = (0..map.errors.len()).filter(|&c| map.fails(c)).map(|c| map.y.values[c / map.x.len()]);
     let what = match rows.reduce(f64::min) {
+        Some(_) if map.name == "horizon" => "Fails the more, the nearer to the horizon".to_owned(),
         Some(tolerance) => format!("Fails in places from {} a step on", number(tolerance)),
         None => "Fails nowhere".to_owned(),
     };
