@@ -95,9 +95,11 @@ pub fn cheapest(scene: &Scene, coloring: Coloring) -> (Method, &'static str) {
     }
 }
 
-/// Graphics processors work in single precision. It is enough, to 10⁻⁴ in distance and colour, for bodies and cameras that move
-/// relative to each other with up to this γ; `docs/gpu.md` has what was measured.
-pub const MOST_GAMMA_ON_GPU: f64 = 1e5;
+/// Graphics processors work in single precision. For bodies and cameras that move relative to each other with up to this γ
+/// they see what the CPU sees. Distance, Doppler factor and colour are good to 10⁻⁴ up to [`MOST_GAMMA`], but the differences
+/// of surfaces one behind the other go with 1/γ of the way to them, and at 10⁴ a window a centimetre before its wall is
+/// no longer told from it; `docs/gpu.md` has what was measured.
+pub const MOST_GAMMA_ON_GPU: f64 = 1e3;
 
 /// Directions of wide lenses are told apart in single precision where there are up to so many pixels a radian.
 const MOST_FOCAL_ON_GPU: f64 = 3e4;
@@ -147,7 +149,7 @@ pub fn not_on_gpu(
     }
 }
 
-/// Opening a graphics processor takes as long as the CPU takes for so many samples.
+/// Opening a graphics processor and compiling for it takes tenths of a second, drawing so many samples on two cores about one.
 const OPENING: u64 = 1 << 25;
 
 /// How many samples pictures by these cameras have in all.
