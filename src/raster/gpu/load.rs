@@ -95,8 +95,13 @@ impl Load {
                     let Some(points) = hull(subject.map, axis, offsets, places, one_sided) else { continue };
                     let index = part.shapes.len() as u32;
                     let before = part.figures.len();
-                    part.figures
-                        .extend(bounder.of_hull(&points).into_iter().flatten().map(|r| quad(r, index)));
+                    let mut add = |rect| part.figures.push(quad(rect, index));
+                    if lens.projection() == Projection::Pinhole && bounder.projected(&points).is_none() {
+                        let whole = Rect { x: [0, lens.width()], y: [0, lens.height()] };
+                        split(lens, &points, whole, HALVINGS, &mut add);
+                    } else {
+                        bounder.of_hull(&points).into_iter().flatten().for_each(add);
+                    }
                     if part.figures.len() == before {
                         continue;
                     }
@@ -180,6 +185,42 @@ impl Load {
                 figure[place] += shapes;
                 figure
             }));
+        }
+    }
+}
+
+/// Halvings of a picture's sides, where what crosses the camera plane is looked for.
+const HALVINGS: u32 = 3;
+
+/// Those parts of a pinhole's picture in which something of a convex hull may be seen, some of it behind the camera or beside
+/// it: not those that have all of it outside one of the planes through the camera and their sides.
+fn split(lens: &Lens, points: &[DVec3; 6], rect: Rect, halvings: u32, add: &mut impl FnMut(Rect)) {
+    let size = points.iter().fold(0.0f64, |size, p| size.max(p.abs().max_element()));
+    let (middle, focal) = (lens.middle(), lens.focal().x);
+    // A pixel more on every side than samples lie in.
+    let side = |pixel: u32, more: f64, middle: f64| (f64::from(pixel) + more - middle) / focal;
+    let [left, right] = [side(rect.x[0], -1.0, middle.x), side(rect.x[1], 1.0, middle.x)];
+    let [top, bottom] = [side(rect.y[0], -1.0, middle.y), side(rect.y[1], 1.0, middle.y)];
+    let inward = [
+        DVec3::new(1.0, 0.0, -left),
+        DVec3::new(-1.0, 0.0, right),
+        DVec3::new(0.0, -1.0, -top),
+        DVec3::new(0.0, 1.0, bottom),
+        DVec3::Z,
+    ];
+    // More than rounding leaves.
+    let is_outside = |n: &DVec3| points.iter().all(|p| p.dot(*n) < -1e-9 * size * n.length());
+    if inward.iter().any(is_outside) {
+        return;
+    }
+    let [width, height] = [rect.x, rect.y].map(|[from, to]| to - from);
+    if halvings == 0 || width < 2 || height < 2 {
+        return add(rect);
+    }
+    let halves = |[from, to]: [u32; 2]| [[from, (from + to) / 2], [(from + to) / 2, to]];
+    for y in halves(rect.y) {
+        for x in halves(rect.x) {
+            split(lens, points, Rect { x, y }, halvings - 1, add);
         }
     }
 }
