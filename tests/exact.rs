@@ -6,7 +6,7 @@ use terrell::film::{Film, Samples};
 use terrell::geodesic::{Celerity, Event};
 use terrell::relativity::Motion;
 use terrell::render::Options;
-use terrell::scene::{Aim, Body, Mesh, Projection, Scene, Speed, View, builtin_scene, builtin_scenes};
+use terrell::scene::{Aim, Body, Projection, Scene, Speed, View, builtin_scene, builtin_scenes, shapes};
 use terrell::trace::{Look, Paths, Tracer};
 
 fn shipped(name: &str) -> Scene {
@@ -75,25 +75,8 @@ fn many_samples() {
 /// A wrinkled ball of 320 000 triangles, of the size people have, from outside and from within.
 #[test]
 fn a_large_mesh() {
-    let n = 400u32;
-    let mut vertices = Vec::new();
-    for i in 0..=n {
-        for j in 0..n {
-            let (theta, phi) = (
-                f64::from(i) * std::f64::consts::PI / f64::from(n),
-                f64::from(j) * std::f64::consts::TAU / f64::from(n),
-            );
-            let out = 1.0 + 0.05 * (9.0 * theta).sin() * (11.0 * phi).cos();
-            vertices.push(out * DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()));
-        }
-    }
-    let at = |i: u32, j: u32| i * n + j % n;
-    let square = |i: u32, j: u32| {
-        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-        [[a, b, c], [a, c, d]]
-    };
-    let triangles = (0..n).flat_map(|i| (0..n).flat_map(move |j| square(i, j))).collect();
-    let mesh = Mesh::new(&vertices, triangles);
+    let mesh = shapes::boulder(400);
+    assert_eq!(mesh.triangles.len(), 320_000);
     for (place, projection) in [(DVec3::Y * 3.0, Projection::Pinhole), (DVec3::ZERO, Projection::Panorama)] {
         let celerity = Celerity::from_beta(DVec3::new(0.9, 0.0, 0.2)).unwrap();
         let motion = Motion { celerity, origin: Event::at(-1.0, place) };

@@ -23,5 +23,7 @@ pub use geodesics::{GeodesicPoint, GeodesicSweep};
 pub use marks::{Faces, Mark};
 pub use pareto::pareto_front;
 pub use reference::{Corners, Known, Reference};
-pub use sweep::{Measured, Sweep, SweepError, SweepPoint, SweepWay, Vertices, series_names, usual_ways};
+pub use sweep::{
+    Measured, ON_GPU, Sweep, SweepError, SweepPoint, SweepWay, Vertices, series_names, usual_ways,
+};
 pub use timing::{Times, interleaved};

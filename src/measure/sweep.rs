@@ -304,9 +304,14 @@ pub fn usual_ways(options: &Options, tolerances: &[f64], few: &[f64], samples: &
             ways.push(way(series, options, Vertices::Cut));
         }
     }
+    for &samples in samples {
+        let raster = Raster::Wgpu;
+        let options = Options { raster, samples, doppler_at: DopplerAt::Pixel, ..options.clone() };
+        ways.push(way(ON_GPU[0], Options { method: Method::Exact, ..options }, Vertices::Cut));
+    }
     let apparent = Options { method: Method::Apparent, samples: 1, ..options.clone() };
     for (series, raster) in RASTERS {
-        for &tolerance in if raster == Raster::default() { tolerances } else { few } {
+        for &tolerance in if raster == Raster::Cpu { tolerances } else { few } {
             ways.push(way(series, Options { tolerance, raster, ..apparent.clone() }, Vertices::Cut));
         }
     }
@@ -322,8 +327,12 @@ pub fn usual_ways(options: &Options, tolerances: &[f64], few: &[f64], samples: &
     ways
 }
 
+/// Series that need a graphics processor.
+pub const ON_GPU: [&str; 2] = ["GPU exact", "GPU apparent"];
+
 /// What cut triangles are drawn by, each a series.
-const RASTERS: [(&str, Raster); 2] = [("apparent", Raster::Cpu), ("painter", Raster::Skia)];
+const RASTERS: [(&str, Raster); 3] =
+    [("apparent", Raster::Cpu), ("painter", Raster::Skia), (ON_GPU[1], Raster::Wgpu)];
 
 /// The names of all series there are, in their order.
 pub fn series_names() -> Vec<&'static str> {

@@ -18,9 +18,9 @@ use std::path::PathBuf;
 use table::Table;
 use terrell::figure::Figure;
 use terrell::geodesic::Celerity;
-use terrell::measure::{GeodesicSweep, series_names};
+use terrell::measure::{GeodesicSweep, ON_GPU, series_names};
 use terrell::plan::is_of_polygons;
-use terrell::render::Options;
+use terrell::render::{Adapter, Options};
 use terrell::scene::{Choice, Scene, Speed, builtin_scenes};
 
 /// Speed against accuracy, measured and drawn: every method, or every way to follow light past a black hole
@@ -68,7 +68,8 @@ pub struct Chart {
     /// Sizes, each a row [default: 640x360]
     #[arg(long, value_name = "WxH,…", value_delimiter = ',', value_parser = size)]
     size: Vec<[u32; 2]>,
-    /// Which series: exact, trace, apparent, painter, uncut, 'D at vertices', 'f32 vertices' [default: all]
+    /// Which series: exact, trace, apparent, painter, uncut, 'D at vertices', 'f32 vertices', 'GPU exact', 'GPU apparent'
+    /// [default: all; the last two if there is a graphics processor that is more than a program on the CPU]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = series)]
     methods: Vec<&'static str>,
     /// Each is timed so often, all in turn [default: 5; of geodesics 11]
@@ -149,10 +150,19 @@ impl Chart {
             few_tolerances: or(&self.tolerance, few),
             samples: if self.samples.is_empty() { samples.to_vec() } else { self.samples.clone() },
             reference_samples: if quick { 16 } else { 64 },
-            series: self.methods.clone(),
+            series: self.series(),
             repeats: self.repeats.unwrap_or(if quick { 3 } else { 5 }),
         };
         scenes::chart(cases, &ways, &self.develop, self.report.quiet)
+    }
+
+    /// Those asked for, or all there can be.
+    fn series(&self) -> Vec<&'static str> {
+        if !self.methods.is_empty() {
+            return self.methods.clone();
+        }
+        let has_gpu = Adapter::find().is_ok_and(|adapter| adapter.is_hardware);
+        series_names().into_iter().filter(|name| has_gpu || !ON_GPU.contains(name)).collect()
     }
 
     /// Every scene at every speed and size.

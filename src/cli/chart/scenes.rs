@@ -13,7 +13,7 @@ use terrell::measure::{
 };
 use terrell::plan::{Method, has_reflections};
 use terrell::relativity::ApparentMap;
-use terrell::render::Options;
+use terrell::render::{Options, Raster};
 use terrell::scene::{Camera, Scene};
 
 /// What is swept, of every case.
@@ -116,7 +116,7 @@ const ROUNDING: f64 = 1e-6;
 pub fn chart(cases: &[Case], ways: &Ways, develop: &DevelopFlags, quiet: bool) -> Result<Charted, Fault> {
     let all: Vec<SweepWay> = usual_ways(&ways.options, &ways.tolerances, &ways.few_tolerances, &ways.samples)
         .into_iter()
-        .filter(|way| ways.series.is_empty() || ways.series.contains(&way.series))
+        .filter(|way| ways.series.contains(&way.series))
         .collect();
     let timed = all.iter().filter(|way| way.vertices != Vertices::CutF32).count();
     let bar = progress_bar(cases.len() * timed * (ways.repeats as usize + 1), "pictures", quiet);
@@ -251,7 +251,7 @@ fn row(case: &Case, point: &SweepPoint, is_best: [bool; 3]) -> [Value; COLUMNS.l
         json!(height),
         json!(point.way.series),
         json!(method.to_string()),
-        json!(is_apparent.then(|| summary::raster(*raster, false))),
+        json!((*method != Method::Trace).then(|| summary::raster(*raster, *raster == Raster::Wgpu))),
         json!(is_cut.then_some(tolerance)),
         json!(samples),
         json!(summary::doppler_at(*doppler_at)),

@@ -1,5 +1,6 @@
 //! The meshes that ship, as they are made; `examples/make_assets.rs` writes them to `assets/`.
 
+mod boulder;
 mod builder;
 mod gate;
 mod lattice;
@@ -9,6 +10,7 @@ mod street;
 mod train;
 mod vehicles;
 
+pub use boulder::boulder;
 pub use gate::gate;
 pub use lattice::lattice;
 pub use sphere::{ball, globe, sphere};
