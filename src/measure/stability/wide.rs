@@ -39,8 +39,8 @@ pub(super) fn offset(motion: &Motion, observer: Event<World>, x_rest: DVec3) -> 
 
 /// Where a point of a body is seen by an observer at rest in the world (Nollert et al. 2000, Eq. 1).
 ///
-/// Of r′ ± P, with P along the motion, the one that would cancel is taken from their product, so that at γ = 10⁹ more than
-/// twenty of the digits are left.
+/// Of r′ ± P, with P along the motion, the one that would cancel is taken from their product. So it is within 10⁻³⁰ times
+/// the [`conditioning`].
 pub fn seen(motion: &Motion, observer: Event<World>, x_rest: DVec3) -> Seen {
     let one = Wide::from(1.0);
     let offset = offset(motion, observer, x_rest);
