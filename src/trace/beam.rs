@@ -101,10 +101,10 @@ impl Several {
 #[inline(always)]
 fn cross(a: &[Each; 3], b: &[Each; 3]) -> [Each; 3] {
     let mut product = [Each::default(); 3];
-    for k in 0..3 {
+    for (k, product) in product.iter_mut().enumerate() {
         let (l, m) = ((k + 1) % 3, (k + 2) % 3);
         for i in 0..TOGETHER {
-            product[k][i] = a[l][i] * b[m][i] - b[l][i] * a[m][i];
+            product[i] = a[l][i] * b[m][i] - b[l][i] * a[m][i];
         }
     }
     product
