@@ -177,6 +177,17 @@ fn the_front_is_one() {
     }
 }
 
+/// What one way cannot draw is said with it; the others are charted.
+#[test]
+fn what_cannot_be_drawn_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    chart(&["shadow", "--methods", "exact,GPU exact", "-o", "shadow.json"], folder.path());
+    let told = json(&folder.path().join("shadow.json"));
+    let failed = |p: &Value| p["failed"].as_str().is_some_and(|why| why.contains("lights shine on"));
+    let points = told["points"].as_array().unwrap();
+    assert!(points.len() >= 2 && points.iter().all(|p| failed(p) == (p["series"] == "GPU exact")));
+}
+
 #[test]
 fn geodesics_are_charted() {
     let folder = tempfile::tempdir().unwrap();

@@ -137,33 +137,32 @@ impl Sweep<'_> {
             many: many.into(),
             development,
         };
-        // What a way cannot do is known before anything is timed.
-        let mut prepared = Vec::with_capacity(self.ways.len());
-        for way in &self.ways {
-            let start = Instant::now();
-            let made = way.options.prepare(self.scene, [self.camera])?;
-            prepared.push((made, start.elapsed()));
-        }
         let mut film = Film::new(0, 0);
         let mut points = Vec::with_capacity(self.ways.len());
+        // What a way cannot do is known before anything is timed.
         let mut timed = Vec::new();
-        for (index, (way, (prepared, preparation))) in self.ways.iter().zip(&prepared).enumerate() {
-            let drawn = self.draw(way, prepared, &mut film);
+        for (index, way) in self.ways.iter().enumerate() {
+            let start = Instant::now();
+            let prepared = way.options.prepare(self.scene, [self.camera]);
+            let preparation = start.elapsed();
+            let drawn = prepared.and_then(|made| Ok((self.draw(way, &made, &mut film)?, made)));
             let measured = match drawn {
-                Ok(pieces) => Ok(self.measure(way, pieces, *preparation, &film, &references)?),
+                Ok((pieces, made)) => {
+                    if way.vertices != Vertices::CutF32 {
+                        timed.push((index, made));
+                    }
+                    Ok(self.measure(way, pieces, preparation, &film, &references)?)
+                }
                 Err(fault) => Err(fault.to_string()),
             };
-            if measured.is_ok() && way.vertices != Vertices::CutF32 {
-                timed.push(index);
-            }
             points.push(SweepPoint { way: way.clone(), measured });
         }
         let draw = |job: usize| {
-            let index = timed[job];
-            self.draw(&self.ways[index], &prepared[index].0, &mut film).map(drop)
+            let (index, made) = &timed[job];
+            self.draw(&self.ways[*index], made, &mut film).map(drop)
         };
         let times = interleaved(timed.len(), self.repeats, PATIENCE, draw, &mut done)?;
-        for (index, times) in timed.iter().zip(times) {
+        for ((index, _), times) in timed.iter().zip(times) {
             if let Ok(measured) = &mut points[*index].measured {
                 measured.frame = Some(times);
             }
