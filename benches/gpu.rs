@@ -62,7 +62,7 @@ fn main() {
     scenes.extend(["gate", "lattice", "street"].map(|name| builtin_scene(name).expect("it ships").scene()));
     println!("ms a frame                              exact: GPU    CPU   apparent: GPU    CPU");
     for scene in &mut scenes {
-        let triangles: usize = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
+        let triangles = scene.triangle_count();
         for (size, samples) in [([1280, 720], 1), ([1280, 720], 9), ([3840, 2160], 1)] {
             scene.view.size = size;
             let ms =

@@ -81,8 +81,7 @@ fn write_rays(
     {
         for (y, x) in (top..top + 8).flat_map(|y| (left..left + 8).map(move |x| (y, x))) {
             let v = lens.direction(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)).unwrap();
-            let boosted = sky.boosted(v, v.length()).along;
-            let v_rest = map.rotate_back(v + (boosted - v.dot(sky.axis())) * sky.axis());
+            let v_rest = map.rotate_back(sky.boosted_direction(v, v.length()));
             primary.extend(vector(eye).into_iter().chain(vector(v_rest)).chain([f32::INFINITY]));
             let i = (y * lens.width() + x) as usize;
             if film.body[i] < 0 {

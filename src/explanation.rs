@@ -2,10 +2,8 @@
 
 use crate::color::Coloring;
 use crate::light::has_shadows;
-use crate::plan::{
-    MOST_GAMMA, Method, greatest_gamma, has_reflections, is_worth_a_gpu, not_on_gpu, samples_to_draw,
-};
-use crate::render::{Adapter, Options, Raster};
+use crate::plan::{MOST_GAMMA, Method, greatest_gamma, has_reflections};
+use crate::render::Options;
 use crate::scene::{Camera, Scene};
 use crate::trace::Tracer;
 use std::fmt::{Display, Formatter};
@@ -29,7 +27,7 @@ pub struct Explanation {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
     /// What it is called in commands.
-    pub name: &'static str,
+    pub name: String,
     /// Whether pictures by it are what is seen: exactly, or to the tolerance.
     pub is_right: bool,
     /// What speaks for or against it.
@@ -63,7 +61,7 @@ struct Subject<'a> {
 impl Subject<'_> {
     fn contents(&self) -> Vec<(&'static str, String)> {
         let Self { scene, cameras, options } = self;
-        let triangles: usize = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
+        let triangles = scene.triangle_count();
         let yes = |is: bool, yes: &str, no: &str| if is { yes } else { no }.to_owned();
         let shadows = match (scene.lights.len(), has_shadows(scene)) {
             (0, _) => "none".to_owned(),
@@ -117,11 +115,7 @@ impl Subject<'_> {
     fn method(&self, method: Method) -> Verdict {
         let Self { scene, cameras, options } = self;
         let lacks = self.lacks(method);
-        let name = match method {
-            Method::Exact => "exact",
-            Method::Apparent => "apparent",
-            Method::Trace => "trace",
-        };
+        let name = method.to_string();
         if !lacks.is_empty() {
             return Verdict { name, is_right: false, reason: lacks.join("; ") };
         }
@@ -155,31 +149,17 @@ impl Subject<'_> {
     }
 
     fn devices(&self) -> Vec<Verdict> {
-        let Self { scene, cameras, options } = self;
-        let samples = samples_to_draw(cameras, options.samples);
-        let verdict = |is_right, reason: String| Verdict { name: "wgpu", is_right, reason };
-        let refused = not_on_gpu(scene, cameras, options.method, options.coloring, options.doppler_at);
-        let gpu = match (refused, options.raster) {
-            (Some(reason), _) => verdict(false, reason.to_owned()),
-            (None, Raster::Cpu | Raster::Skia) => verdict(false, "not asked for".to_owned()),
-            (None, Raster::Auto) if !is_worth_a_gpu(cameras, options.samples) => verdict(
-                false,
-                format!("not looked for: {samples} samples are drawn sooner than one is opened"),
-            ),
-            (None, raster) => match Adapter::find() {
-                Err(fault) => verdict(false, fault),
-                Ok(Adapter { name, is_hardware: false }) if raster == Raster::Auto => verdict(
-                    false,
-                    format!("{name} is a program on the CPU, slower than what there is for it"),
-                ),
-                Ok(Adapter { name, .. }) => verdict(true, name),
-            },
+        let found = self.options.device(self.scene, self.cameras);
+        let cpu = match found {
+            Ok(_) => "right for all scenes; the graphics processor is quicker here",
+            Err(_) => "right for all scenes",
         };
-        let cpu = match gpu.is_right {
-            true => "right for all scenes; the graphics processor is quicker here",
-            false => "right for all scenes",
+        let (is_right, reason) = match found {
+            Ok(name) => (true, name),
+            Err(why) => (false, why.to_string()),
         };
-        vec![Verdict { name: "cpu", is_right: true, reason: cpu.to_owned() }, gpu]
+        let gpu = Verdict { name: "wgpu".to_owned(), is_right, reason };
+        vec![Verdict { name: "cpu".to_owned(), is_right: true, reason: cpu.to_owned() }, gpu]
     }
 }
 

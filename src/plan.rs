@@ -66,10 +66,7 @@ pub const MOST_GAMMA: f64 = 1e5;
 /// The greatest γ with which a body and the camera, as it is before a moment is chosen, move relative to each other.
 pub fn greatest_gamma(scene: &Scene) -> f64 {
     let camera = &scene.view.celerity;
-    let relative = |body: &Body| {
-        let body = &body.motion.celerity;
-        body.gamma() * camera.gamma() - body.vector().dot(camera.vector())
-    };
+    let relative = |body: &Body| body.motion.celerity.relative_gamma(camera);
     scene.bodies.iter().map(relative).fold(1.0, f64::max)
 }
 
@@ -114,10 +111,8 @@ pub fn not_on_gpu(
 ) -> Option<&'static str> {
     let bodies = || scene.bodies.iter();
     let materials = || bodies().flat_map(|body| &body.mesh.materials);
-    let gamma = |camera: &Camera, body: &Body| {
-        let (camera, body) = (camera.observer.celerity(), &body.motion.celerity);
-        body.gamma() * camera.gamma() - body.vector().dot(camera.vector())
-    };
+    let gamma =
+        |camera: &Camera, body: &Body| body.motion.celerity.relative_gamma(&camera.observer.celerity());
     let is_narrow = |camera: &&Camera| {
         let lens = camera.lens;
         lens.projection() != Projection::Pinhole && lens.focal().max_element() > MOST_FOCAL_ON_GPU

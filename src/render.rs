@@ -3,8 +3,8 @@
 use crate::apparent::{ApparentMesh, Field, Subdivision, TooManyPieces};
 use crate::color::Coloring;
 use crate::film::{Film, Samples};
-use crate::light::{DopplerAt, Shading, ShadingError};
-use crate::plan::{Method, is_worth_a_gpu, not_on_gpu};
+use crate::light::{DopplerAt, SeenShading, Shading, ShadingError};
+use crate::plan::{Method, is_worth_a_gpu, not_on_gpu, samples_to_draw};
 #[cfg(feature = "gpu")]
 use crate::raster::gpu::{Gpu, GpuError, Uncut};
 use crate::raster::{Drawable, TooManyToPaint, paint, shade_again};
@@ -125,17 +125,58 @@ impl Options {
 
     /// The graphics processor to draw with, if one is to.
     fn gpu(&self, scene: &Scene, cameras: &[&Camera]) -> Result<Option<Device>, RenderError> {
-        let reason = || not_on_gpu(scene, cameras, self.method, self.coloring, self.doppler_at);
-        match self.raster {
-            Raster::Cpu | Raster::Skia => Ok(None),
-            Raster::Wgpu => match reason() {
-                Some(reason) => Err(RenderError::NotOnGpu(reason)),
-                None => open().map(Some),
-            },
-            Raster::Auto if !is_worth_a_gpu(cameras, self.samples) || reason().is_some() => Ok(None),
-            Raster::Auto => Ok(open().ok().filter(|gpu| gpu.is_hardware())),
+        match self.find_gpu(scene, cameras) {
+            Ok(gpu) => Ok(Some(gpu)),
+            Err(OnCpu::NotOnGpu(reason)) if self.raster == Raster::Wgpu => Err(RenderError::NotOnGpu(reason)),
+            Err(OnCpu::None(fault)) if self.raster == Raster::Wgpu => Err(fault),
+            Err(_) => Ok(None),
         }
     }
+
+    /// The same, or why there is none.
+    fn find_gpu(&self, scene: &Scene, cameras: &[&Camera]) -> Result<Device, OnCpu> {
+        if matches!(self.raster, Raster::Cpu | Raster::Skia) {
+            return Err(OnCpu::NotAsked);
+        }
+        if let Some(reason) = not_on_gpu(scene, cameras, self.method, self.coloring, self.doppler_at) {
+            return Err(OnCpu::NotOnGpu(reason));
+        }
+        let is_asked = self.raster == Raster::Wgpu;
+        if !is_asked && !is_worth_a_gpu(cameras, self.samples) {
+            return Err(OnCpu::NotWorth(samples_to_draw(cameras, self.samples)));
+        }
+        let gpu = open().map_err(OnCpu::None)?;
+        if is_asked || gpu.is_hardware() { Ok(gpu) } else { Err(OnCpu::Software(gpu.name().to_owned())) }
+    }
+
+    /// The name of the graphics processor that pictures of a scene by these cameras are drawn on, or why none is. One is
+    /// looked for where drawing would look for one.
+    ///
+    /// # Errors
+    /// Why the CPU draws.
+    pub fn device(&self, scene: &Scene, cameras: &[&Camera]) -> Result<String, OnCpu> {
+        self.find_gpu(scene, cameras).map(|gpu| gpu.name().to_owned())
+    }
+}
+
+/// Why the CPU draws.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum OnCpu {
+    /// Nothing else is asked for.
+    #[error("not asked for")]
+    NotAsked,
+    /// What a graphics processor is not for.
+    #[error("{0}")]
+    NotOnGpu(&'static str),
+    /// So many samples are too few.
+    #[error("not looked for: {0} samples are drawn sooner than one is opened")]
+    NotWorth(u64),
+    /// There is none.
+    #[error(transparent)]
+    None(RenderError),
+    /// The one there is.
+    #[error("{0} is a program on the CPU, slower than what there is for it")]
+    Software(String),
 }
 
 /// A graphics processor that pictures can be drawn on.
@@ -304,12 +345,13 @@ pub fn render_again(
     film: &mut Film,
     step: impl FnMut(Step) + Send,
 ) -> Result<Report, RenderError> {
+    let shot = Shot { scene, camera, options, prepared, samples: Samples::new(options.samples) };
     #[cfg(feature = "gpu")]
     let mut step = step;
     #[cfg(feature = "gpu")]
     let fault = match &prepared.gpu {
         None => None,
-        Some(gpu) => match draw_on(gpu, scene, camera, options, prepared, film, &mut step) {
+        Some(gpu) => match shot.draw_on(gpu, film, &mut step) {
             Err(RenderError::Gpu(fault)) if options.raster == Raster::Auto => Some(fault.to_string()),
             done => return done,
         },
@@ -317,59 +359,118 @@ pub fn render_again(
     #[cfg(not(feature = "gpu"))]
     let fault = None;
     let report = match prepared.tracer(scene, options.method) {
-        Some(tracer) => follow(tracer, scene, camera, options, prepared, film, step),
-        None => polygons(scene, camera, options, prepared, film, step),
+        Some(tracer) => shot.follow(tracer, film, step),
+        None => shot.polygons(film, step),
     }?;
     Ok(Report { gpu_fault: fault, ..report })
 }
 
-/// By lines of sight.
-fn follow(
-    tracer: &Tracer,
+/// A picture to be drawn.
+struct Shot<'a> {
+    scene: &'a Scene,
+    camera: &'a Camera,
+    options: &'a Options,
+    prepared: &'a Prepared,
+    samples: Samples,
+}
+
+impl Shot<'_> {
+    /// By lines of sight.
+    fn follow(
+        &self,
+        tracer: &Tracer,
+        film: &mut Film,
+        mut step: impl FnMut(Step) + Send,
+    ) -> Result<Report, RenderError> {
+        let Self { scene, camera, options, .. } = self;
+        let shading = &self.prepared.shading.seen_by(&camera.observer);
+        let triangles = scene.triangle_count();
+        let start = Instant::now();
+        let paths = if options.method == Method::Exact { Paths::default() } else { options.paths };
+        let look = Look { samples: self.samples.offsets(), shading, paths };
+        let rays = if let (Spacetime::Kerr(hole), Some(eye)) = (&scene.spacetime, scene.eye(camera)?) {
+            let space = around_seen_from(*hole, &eye);
+            let step = Mutex::new(step);
+            let of = camera.lens.height();
+            // A panic of another thread is told by that thread.
+            let done = |done| step.lock().unwrap_or_else(PoisonError::into_inner)(Step::Rows { done, of });
+            tracer.trace_curved(scene, &space, &eye, &camera.lens, &look, film, done)
+        } else {
+            tracer.trace(scene, camera, &look, film, |done, of| step(Step::Tracing { done, of }))
+        };
+        let shading = start.elapsed();
+        Ok(Report { triangles, pieces: triangles, shading, rays: Some(rays), ..Report::default() })
+    }
+
+    /// By polygons.
+    fn polygons(&self, film: &mut Film, step: impl FnMut(Step) + Send) -> Result<Report, RenderError> {
+        self.cut_and_draw(step, |bodies, shading| {
+            match self.options.raster {
+                Raster::Skia => *film = paint(bodies, &self.camera.lens, &self.samples, shading)?,
+                _ => shade_again(bodies, &self.camera.lens, &self.samples, shading, film),
+            }
+            Ok(())
+        })
+    }
+
+    /// Moves bodies to where they are seen, cuts them, and has them drawn.
+    fn cut_and_draw(
+        &self,
+        mut step: impl FnMut(Step),
+        draw: impl FnOnce(&[Drawable<'_>], &SeenShading<'_>) -> Result<(), RenderError>,
+    ) -> Result<Report, RenderError> {
+        let Self { scene, camera, options, .. } = self;
+        let shading = &self.prepared.shading.seen_by(&camera.observer);
+        let start = Instant::now();
+        let seen = cut(scene, camera, options, |body| step(Step::Cutting(body)))?;
+        let cut = Instant::now();
+        step(Step::Drawing);
+        draw(&drawables(&seen), shading)?;
+        let (subdivision, shading) = (cut - start, cut.elapsed());
+        let (triangles, pieces) = (scene.triangle_count(), pieces(&seen));
+        Ok(Report { triangles, pieces, subdivision, shading, ..Report::default() })
+    }
+
+    /// On a graphics processor.
+    #[cfg(feature = "gpu")]
+    fn draw_on(&self, gpu: &Gpu, film: &mut Film, mut step: impl FnMut(Step)) -> Result<Report, RenderError> {
+        let Self { scene, camera, samples, .. } = self;
+        let name = Some(gpu.name().to_owned());
+        if self.options.method == Method::Apparent {
+            let report = self.cut_and_draw(step, |bodies, shading| {
+                Ok(gpu.draw(bodies, &camera.lens, samples, shading, film)?)
+            })?;
+            return Ok(Report { gpu: name, ..report });
+        }
+        let shading = &self.prepared.shading.seen_by(&camera.observer);
+        let start = Instant::now();
+        step(Step::Drawing);
+        let bodies = scene
+            .bodies
+            .iter()
+            .map(|body| (ApparentMap::new(&body.motion, &camera.observer), body.mesh_seen(&camera.observer)));
+        let bodies: Vec<_> = bodies.collect();
+        let uncut = bodies.iter().enumerate().map(|(body, (map, mesh))| Uncut { body, mesh, map });
+        gpu.draw_uncut(&uncut.collect::<Vec<_>>(), &camera.lens, samples, shading, film)?;
+        let triangles = scene.triangle_count();
+        Ok(Report { triangles, pieces: triangles, shading: start.elapsed(), gpu: name, ..Report::default() })
+    }
+}
+
+/// A body as it is drawn: the map it is seen through, its mesh at rest, and that as it is seen.
+pub type SeenBody = (ApparentMap, Arc<Mesh>, ApparentMesh);
+
+/// Every body moved to where it is seen, and cut; `begin` hears of each before.
+pub(crate) fn cut(
     scene: &Scene,
     camera: &Camera,
     options: &Options,
-    prepared: &Prepared,
-    film: &mut Film,
-    mut step: impl FnMut(Step) + Send,
-) -> Result<Report, RenderError> {
-    let (samples, shading) = (Samples::new(options.samples), &prepared.shading.seen_by(&camera.observer));
-    let triangles = count(scene);
-    let start = Instant::now();
-    let paths = if options.method == Method::Exact { Paths::default() } else { options.paths };
-    let look = Look { samples: samples.offsets(), shading, paths };
-    let rays = if let (Spacetime::Kerr(hole), Some(eye)) = (&scene.spacetime, scene.eye(camera)?) {
-        let space = around_seen_from(*hole, &eye);
-        let step = Mutex::new(step);
-        let of = camera.lens.height();
-        // A panic of another thread is told by that thread.
-        let done = |done| step.lock().unwrap_or_else(PoisonError::into_inner)(Step::Rows { done, of });
-        tracer.trace_curved(scene, &space, &eye, &camera.lens, &look, film, done)
-    } else {
-        tracer.trace(scene, camera, &look, film, |done, of| step(Step::Tracing { done, of }))
-    };
-    let shading = start.elapsed();
-    Ok(Report { triangles, pieces: triangles, shading, rays: Some(rays), ..Report::default() })
-}
-
-fn count(scene: &Scene) -> usize {
-    scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum()
-}
-
-/// A body as it is seen.
-type Seen = (ApparentMap, Arc<Mesh>, ApparentMesh);
-
-/// Every body moved to where it is seen, and cut.
-fn cut(
-    scene: &Scene,
-    camera: &Camera,
-    options: &Options,
-    step: &mut impl FnMut(Step),
-) -> Result<Vec<Seen>, RenderError> {
+    mut begin: impl FnMut(usize),
+) -> Result<Vec<SeenBody>, RenderError> {
     let field = Field::new(&camera.lens);
-    let mut seen: Vec<Seen> = Vec::with_capacity(scene.bodies.len());
+    let mut seen: Vec<SeenBody> = Vec::with_capacity(scene.bodies.len());
     for (index, body) in scene.bodies.iter().enumerate() {
-        step(Step::Cutting(index));
+        begin(index);
         let map = ApparentMap::new(&body.motion, &camera.observer);
         // What is not cut is drawn however much it is, and may be more than allowed already.
         let left = options.most_pieces.saturating_sub(pieces(&seen));
@@ -382,67 +483,13 @@ fn cut(
     Ok(seen)
 }
 
-fn pieces(seen: &[Seen]) -> usize {
+/// How many triangles they are drawn as.
+pub(crate) fn pieces(seen: &[SeenBody]) -> usize {
     seen.iter().map(|(_, _, seen)| seen.triangles.len()).sum()
 }
 
-fn drawables(seen: &[Seen]) -> Vec<Drawable<'_>> {
+/// All bodies of a scene, as they are drawn.
+pub(crate) fn drawables(seen: &[SeenBody]) -> Vec<Drawable<'_>> {
     let drawable = |(body, (map, mesh, seen))| Drawable { body, mesh, map, seen };
     seen.iter().map(|(map, mesh, seen)| (map, &**mesh, seen)).enumerate().map(drawable).collect()
-}
-
-/// By polygons.
-fn polygons(
-    scene: &Scene,
-    camera: &Camera,
-    options: &Options,
-    prepared: &Prepared,
-    film: &mut Film,
-    mut step: impl FnMut(Step) + Send,
-) -> Result<Report, RenderError> {
-    let (samples, shading) = (Samples::new(options.samples), &prepared.shading.seen_by(&camera.observer));
-    let start = Instant::now();
-    let seen = cut(scene, camera, options, &mut step)?;
-    let cut = Instant::now();
-    step(Step::Drawing);
-    let drawables = drawables(&seen);
-    match options.raster {
-        Raster::Skia => *film = paint(&drawables, &camera.lens, &samples, shading)?,
-        _ => shade_again(&drawables, &camera.lens, &samples, shading, film),
-    }
-    let (subdivision, shading) = (cut - start, cut.elapsed());
-    let (triangles, pieces) = (count(scene), pieces(&seen));
-    Ok(Report { triangles, pieces, subdivision, shading, ..Report::default() })
-}
-
-/// On a graphics processor.
-#[cfg(feature = "gpu")]
-fn draw_on(
-    gpu: &Gpu,
-    scene: &Scene,
-    camera: &Camera,
-    options: &Options,
-    prepared: &Prepared,
-    film: &mut Film,
-    step: &mut impl FnMut(Step),
-) -> Result<Report, RenderError> {
-    let (samples, shading) = (Samples::new(options.samples), &prepared.shading.seen_by(&camera.observer));
-    let (start, triangles) = (Instant::now(), count(scene));
-    let report = Report { triangles, gpu: Some(gpu.name().to_owned()), ..Report::default() };
-    if options.method == Method::Apparent {
-        let seen = cut(scene, camera, options, step)?;
-        let cut = Instant::now();
-        step(Step::Drawing);
-        gpu.draw(&drawables(&seen), &camera.lens, &samples, shading, film)?;
-        let (subdivision, shading) = (cut - start, cut.elapsed());
-        return Ok(Report { pieces: pieces(&seen), subdivision, shading, ..report });
-    }
-    step(Step::Drawing);
-    let seen = |body: &crate::scene::Body| {
-        (ApparentMap::new(&body.motion, &camera.observer), body.mesh_seen(&camera.observer))
-    };
-    let bodies: Vec<_> = scene.bodies.iter().map(seen).collect();
-    let uncut = bodies.iter().enumerate().map(|(body, (map, mesh))| Uncut { body, mesh, map });
-    gpu.draw_uncut(&uncut.collect::<Vec<_>>(), &camera.lens, &samples, shading, film)?;
-    Ok(Report { pieces: triangles, shading: start.elapsed(), ..report })
 }

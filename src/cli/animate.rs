@@ -332,7 +332,7 @@ impl Done<'_> {
                 Method::Apparent => "apparent shading",
                 Method::Trace => "ray tracing",
             },
-            tally.gpu.as_ref().map_or_else(|| "the CPU".to_owned(), |name| format!("the GPU ({name})")),
+            summary::device(tally.gpu.as_deref()),
             self.colors_in_words(),
             took,
         );

@@ -247,8 +247,8 @@ pub fn shadow_note(scene: &Scene, coloring: Coloring) -> Option<String> {
 }
 
 /// "the CPU", or what graphics processor.
-pub fn device(report: &Report) -> String {
-    report.gpu.as_ref().map_or_else(|| "the CPU".to_owned(), |name| format!("the GPU ({name})"))
+pub fn device(gpu: Option<&str>) -> String {
+    gpu.map_or_else(|| "the CPU".to_owned(), |name| format!("the GPU ({name})"))
 }
 
 /// Why the CPU drew where it was not meant to, for people to read.
@@ -259,7 +259,7 @@ pub fn gpu_note(report: &Report) -> Option<String> {
 /// What drew it, and why: "apparent shading on the CPU, 12 triangles cut into 96 for 0.25 px".
 pub fn method_in_words(options: &Options, report: &Report, why: Option<&str>) -> String {
     let why = why.map_or_else(String::new, |why| format!(" ({why})"));
-    let device = device(report);
+    let device = device(report.gpu.as_deref());
     match (&report.rays, options.raster) {
         _ if report.gpu.is_some() && options.method == Method::Exact => {
             format!("exact shading on {device}{why}, {} triangles", report.triangles)

@@ -106,10 +106,13 @@ impl<'a> Facet<'a> {
 
     /// The surface's colours, where they are the same all over the triangle.
     pub fn plain_colors(&self) -> Option<Colors> {
-        let mesh = self.mesh;
-        let textured = mesh.material_of(self.face).is_some_and(Material::is_textured);
-        let plain = mesh.paint.is_of_faces() && !textured;
-        plain.then(|| mesh.colors(self.face, [1.0, 0.0, 0.0], |_| [1.0; 3]))
+        let plain = self.mesh.paint.is_of_faces() && !self.is_textured();
+        plain.then(|| self.mesh.colors(self.face, [1.0, 0.0, 0.0], |_| [1.0; 3]))
+    }
+
+    #[inline]
+    fn is_textured(&self) -> bool {
+        self.mesh.material_of(self.face).is_some_and(Material::is_textured)
     }
 
     #[inline]
@@ -119,7 +122,7 @@ impl<'a> Facet<'a> {
         }
         let mesh = self.mesh;
         let weights = clamped(self.weights(at));
-        if !mesh.material_of(self.face).is_some_and(Material::is_textured) {
+        if !self.is_textured() {
             return mesh.colors(self.face, weights, |_| [1.0; 3]);
         }
         let corner_uv = mesh.corner_uv(self.face).unwrap_or_default();

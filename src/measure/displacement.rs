@@ -1,6 +1,7 @@
 use crate::apparent::{ApparentMesh, WHOLE};
 use crate::film::Film;
 use crate::relativity::ApparentMap;
+use crate::render::SeenBody;
 use crate::scene::{Camera, Lens, Mesh, Projection, Scene};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -17,9 +18,6 @@ pub struct Displacement {
     /// Pixels of edge that were measured, or pixels.
     pub measured: f64,
 }
-
-/// A body as it is drawn: the map it is seen through, its mesh at rest, and that as it is seen.
-pub type SeenBody = (ApparentMap, Arc<Mesh>, ApparentMesh);
 
 /// A weighted sum of squares, and the greatest.
 #[derive(Clone, Copy, Default)]
@@ -195,9 +193,7 @@ pub fn beyond_faces(scene: &Scene, camera: &Camera, film: &Film) -> Displacement
 /// Pixels from a point of the picture to the image of a triangle (corners at rest) it is not in; none if it is.
 fn outside(map: &ApparentMap, corners: [DVec3; 3], lens: &Lens, at: DVec2) -> Option<f64> {
     let v = lens.direction(at)?;
-    let sky = map.rest_sky();
-    let along = sky.boosted(v, v.length()).along;
-    let v_rest = map.rotate_back(v + (along - v.dot(sky.axis())) * sky.axis());
+    let v_rest = map.rotate_back(map.rest_sky().boosted_direction(v, v.length()));
     let offsets = corners.map(|corner| map.offset_rest(corner));
     let heights = [0, 1, 2].map(|i| v_rest.dot(offsets[i].cross(offsets[(i + 1) % 3])));
     let is_in = heights.iter().all(|h| *h >= 0.0) || heights.iter().all(|h| *h <= 0.0);
@@ -236,24 +232,16 @@ fn nearest_of_side(map: &ApparentMap, [from, to]: [DVec3; 2], lens: &Lens, at: D
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::apparent::{Field, Subdivision};
+    use crate::render::{Options, cut};
     use crate::scene::builtin_scene;
 
     fn seen(scene: &Scene, camera: &Camera, tolerance: Option<f64>) -> Vec<SeenBody> {
-        let field = Field::new(&camera.lens);
-        let body = |body: &crate::scene::Body| {
-            let map = ApparentMap::new(&body.motion, &camera.observer);
-            let mesh = body.mesh_seen(&camera.observer);
-            let seen = match tolerance {
-                Some(tolerance) => {
-                    let how = Subdivision { tolerance, ..Subdivision::default() };
-                    ApparentMesh::new(&mesh, &map, &field, &how).unwrap()
-                }
-                None => ApparentMesh::linear(&mesh, &map),
-            };
-            (map, mesh, seen)
-        };
-        scene.bodies.iter().map(body).collect()
+        let options = Options { tolerance: tolerance.unwrap_or(0.25), ..Options::default() };
+        let mut bodies = cut(scene, camera, &options, |_| ()).unwrap();
+        if tolerance.is_none() {
+            bodies.iter_mut().for_each(|(map, mesh, seen)| *seen = ApparentMesh::linear(mesh, map));
+        }
+        bodies
     }
 
     #[test]

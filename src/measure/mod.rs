@@ -17,7 +17,7 @@ mod timing;
 
 pub use comparison::{Comparison, Disagreement, Figures, Radiance, SizesDiffer, Worst};
 pub use deflection::schwarzschild_deflection;
-pub use displacement::{Displacement, SeenBody, beyond_faces, edge_displacement, f32_displacement, in_f32};
+pub use displacement::{Displacement, beyond_faces, edge_displacement, f32_displacement, in_f32};
 pub use flip::{FlipError, Perceived, flip};
 pub use geodesics::{GeodesicPoint, GeodesicSweep};
 pub use marks::{Faces, Mark};

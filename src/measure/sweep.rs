@@ -1,17 +1,15 @@
-use super::displacement::{
-    Displacement, SeenBody, beyond_faces, edge_displacement, f32_displacement, in_f32,
-};
+use super::displacement::{Displacement, beyond_faces, edge_displacement, f32_displacement, in_f32};
 use super::{Comparison, Corners, Figures, FlipError, Perceived, Reference, Times, flip, interleaved};
-use crate::apparent::{ApparentMesh, Field, Subdivision, TooManyPieces};
+use crate::apparent::ApparentMesh;
 use crate::color::Coloring;
 use crate::film::{Film, Samples};
-use crate::light::DopplerAt;
+use crate::light::{DopplerAt, Shading, ShadingError};
 use crate::picture::pixels_srgb;
 use crate::plan::Method;
-use crate::raster::{Drawable, shade_again};
+use crate::raster::shade_again;
 use crate::relativity::ApparentMap;
-use crate::render::{Options, Prepared, Raster, RenderError, render_again};
-use crate::scene::{Camera, Scene};
+use crate::render::{Options, Prepared, Raster, RenderError, SeenBody, cut, drawables, pieces, render_again};
+use crate::scene::{Body, Camera, Scene};
 use crate::tone::Development;
 use crate::trace::{Look, Paths, Tracer};
 use std::time::{Duration, Instant};
@@ -129,7 +127,7 @@ impl Sweep<'_> {
         let traced = Options { method: Method::Trace, doppler_at: DopplerAt::Pixel, ..options.clone() };
         let many = self.film(&Options { samples: self.reference_samples, ..traced.clone() })?;
         let one = self.film(&Options { samples: 1, ..traced.clone() })?;
-        let corners = Some(Corners::traced(self.scene, self.camera, &traced, &one)?);
+        let corners = Some(Corners::traced(self.scene, self.camera, &one).map_err(RenderError::from)?);
         let development = develop(&many)?;
         let references = References {
             lines: Reference { corners, ..one.into() },
@@ -184,33 +182,31 @@ impl Sweep<'_> {
             return Ok(report.pieces);
         }
         let bodies = self.seen(way)?;
-        let drawables: Vec<Drawable<'_>> = bodies
-            .iter()
-            .enumerate()
-            .map(|(body, (map, mesh, seen))| Drawable { body, mesh, map, seen })
-            .collect();
         let shading = prepared.shading.seen_by(&self.camera.observer);
-        shade_again(&drawables, &self.camera.lens, &Samples::new(way.options.samples), &shading, film);
-        Ok(bodies.iter().map(|(.., seen)| seen.triangles.len()).sum())
+        let samples = Samples::new(way.options.samples);
+        shade_again(&drawables(&bodies), &self.camera.lens, &samples, &shading, film);
+        Ok(pieces(&bodies))
     }
 
     /// The bodies as they are drawn.
-    fn seen(&self, way: &SweepWay) -> Result<Vec<SeenBody>, TooManyPieces> {
-        let field = Field::new(&self.camera.lens);
-        let how = Subdivision { tolerance: way.options.tolerance, most: way.options.most_pieces };
-        let body = |body: &crate::scene::Body| {
-            let map = ApparentMap::new(&body.motion, &self.camera.observer);
-            let mesh = body.mesh_seen(&self.camera.observer);
-            let mut seen = match way.vertices {
-                Vertices::Linear => ApparentMesh::linear(&mesh, &map),
-                Vertices::Cut | Vertices::CutF32 => ApparentMesh::new(&mesh, &map, &field, &how)?,
+    fn seen(&self, way: &SweepWay) -> Result<Vec<SeenBody>, RenderError> {
+        let Self { scene, camera, .. } = self;
+        if way.vertices == Vertices::Linear {
+            let uncut = |body: &Body| {
+                let map = ApparentMap::new(&body.motion, &camera.observer);
+                let mesh = body.mesh_seen(&camera.observer);
+                let seen = ApparentMesh::linear(&mesh, &map);
+                (map, mesh, seen)
             };
-            if way.vertices == Vertices::CutF32 {
-                seen.vertices.iter_mut().for_each(|vertex| *vertex = in_f32(&map, *vertex));
+            return Ok(scene.bodies.iter().map(uncut).collect());
+        }
+        let mut bodies = cut(scene, camera, &way.options, |_| ())?;
+        if way.vertices == Vertices::CutF32 {
+            for (map, _, seen) in &mut bodies {
+                seen.vertices.iter_mut().for_each(|vertex| *vertex = in_f32(map, *vertex));
             }
-            Ok((map, mesh, seen))
-        };
-        self.scene.bodies.iter().map(body).collect()
+        }
+        Ok(bodies)
     }
 
     fn measure(
@@ -225,11 +221,9 @@ impl Sweep<'_> {
         let edges = match (way.options.method, way.vertices) {
             (Method::Apparent, Vertices::CutF32) => {
                 let exact = SweepWay { vertices: Vertices::Cut, ..way.clone() };
-                Some(f32_displacement(&self.seen(&exact).map_err(RenderError::from)?, lens))
+                Some(f32_displacement(&self.seen(&exact)?, lens))
             }
-            (Method::Apparent, _) => {
-                Some(edge_displacement(&self.seen(way).map_err(RenderError::from)?, lens))
-            }
+            (Method::Apparent, _) => Some(edge_displacement(&self.seen(way)?, lens)),
             _ => None,
         };
         let compare = |reference| Comparison::new(reference, film).expect("all are of one size").whole;
@@ -265,22 +259,11 @@ impl Corners {
     /// What rays through the corners of pixels see, of a film of what those through their centres see.
     ///
     /// # Errors
-    /// If the scene cannot be traced.
-    pub fn traced(
-        scene: &Scene,
-        camera: &Camera,
-        options: &Options,
-        centres: &Film,
-    ) -> Result<Self, RenderError> {
+    /// If a spectrum cannot be.
+    pub fn traced(scene: &Scene, camera: &Camera, centres: &Film) -> Result<Self, ShadingError> {
         // Whatever it is, it is asked what it is only.
-        let options = Options {
-            method: Method::Trace,
-            doppler_at: DopplerAt::Pixel,
-            coloring: Coloring::Doppler,
-            ..options.clone()
-        };
-        let prepared = options.prepare(scene, [camera])?;
-        let (shading, tracer) = (prepared.shading.seen_by(&camera.observer), Tracer::new(scene));
+        let shading = Shading::new(scene, [&camera.observer], Coloring::Doppler)?;
+        let (shading, tracer) = (shading.seen_by(&camera.observer), Tracer::new(scene));
         let films = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|corner| {
             let mut film = Film::new(0, 0);
             let look = Look { samples: &[corner], shading: &shading, paths: Paths::default() };

@@ -34,6 +34,12 @@ impl Times {
         [self.sorted[0], self.sorted[self.sorted.len() - 1]]
     }
 
+    /// In seconds: the median, the quartiles, the least and the greatest.
+    pub fn seconds(&self) -> [f64; 5] {
+        let ([low, high], [least, most]) = (self.quartiles(), self.range());
+        [self.median(), low, high, least, most].map(|time| time.as_secs_f64())
+    }
+
     /// How many runs there were.
     pub fn runs(&self) -> usize {
         self.sorted.len()

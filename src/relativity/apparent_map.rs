@@ -279,6 +279,12 @@ impl RestSky {
         self.boosted_parts(v.dot(self.axis), v.cross(self.axis).length_squared(), length)
     }
 
+    /// The same as a vector, in the observer's axes, boosted along the motion.
+    #[inline]
+    pub fn boosted_direction(&self, v: DVec3, length: f64) -> DVec3 {
+        v + (self.boosted(v, length).along - v.dot(self.axis)) * self.axis
+    }
+
     /// As [`boosted`](Self::boosted), of a line of sight given by v·û and |v × û|².
     #[inline(always)]
     pub fn boosted_parts(&self, along: f64, across_squared: f64, length: f64) -> BoostedSight {

@@ -134,6 +134,11 @@ impl Scene {
         })
     }
 
+    /// How many triangles its meshes have, those of several bodies as often.
+    pub fn triangle_count(&self) -> usize {
+        self.bodies.iter().map(|body| body.mesh.triangles.len()).sum()
+    }
+
     /// Sets how many seconds of their clips pass in a unit of time, for all that is animated; 0 stops it.
     pub fn set_animation_rate(&mut self, rate: f64) {
         for clip in self.bodies.iter_mut().filter_map(|b| b.clip.as_mut()) {

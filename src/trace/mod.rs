@@ -140,8 +140,7 @@ impl Tracer {
 
     /// Whether [`exact`](Self::exact) lists triangles for so many pictures of a scene.
     pub fn is_listed(scene: &Scene, pictures: usize) -> bool {
-        let triangles: usize = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
-        triangles >= FEW && pictures <= MANY
+        scene.triangle_count() >= FEW && pictures <= MANY
     }
 
     /// As [`exact`](Self::exact), however few triangles or many pictures there are.

@@ -94,10 +94,7 @@ impl Target {
     /// A line of sight in the rest frame, with the same affine parameter.
     #[inline]
     pub fn rest_direction(&self, v: DVec3, length: f64) -> DVec3 {
-        let axis = self.sky.axis();
-        let along = v.dot(axis);
-        let rest = self.sky.boosted(v, length).along;
-        self.map.rotate_back(v + (rest - along) * axis)
+        self.map.rotate_back(self.sky.boosted_direction(v, length))
     }
 
     /// All together; with AVX2 if `vectors` and there is such.

@@ -150,6 +150,13 @@ impl Celerity {
         self.gamma_as::<Wide>().value()
     }
 
+    /// The Lorentz factor with which two move relative to each other: γγ′ − u·u′, of which nothing is lost where both are
+    /// fast in one direction.
+    pub fn relative_gamma(&self, other: &Self) -> f64 {
+        let ([a, b, c], [x, y, z]) = (self.0.to_array().map(Wide::from), other.0.to_array().map(Wide::from));
+        (self.gamma_as::<Wide>() * other.gamma_as::<Wide>() - (a * x + b * y + c * z)).value()
+    }
+
     /// γ with the digits of `S`.
     pub(crate) fn gamma_as<S: Real>(&self) -> S {
         let [x, y, z] = self.0.to_array().map(S::from);
@@ -194,6 +201,17 @@ impl Celerity {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn relative_gamma_is_that_of_the_difference_of_rapidities() {
+        let of = |rapidity: f64| Celerity::from_rapidity(rapidity, DVec3::new(1.0, -2.0, 2.0)).unwrap();
+        // To the last digit of u, of which each counts its own γ times.
+        for (a, b) in [(0.0, 3.0), (1.0, -2.0), (20.0, 20.0), (21.0, 19.0)] {
+            let (gamma, expected) = (of(a).relative_gamma(&of(b)), (a - b).cosh());
+            assert!((gamma / expected - 1.0).abs() < 1e-14, "{a} {b}: {gamma} {expected}");
+        }
+        assert_eq!(of(1.0).relative_gamma(&Celerity::at_rest()), of(1.0).gamma());
+    }
 
     #[test]
     fn beta_gamma_celerity_and_rapidity_name_one_motion() {

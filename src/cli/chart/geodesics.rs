@@ -1,9 +1,9 @@
-use super::Charted;
 use super::table::Table;
+use super::{Charted, front_of, join};
 use crate::cli::Fault;
 use crate::cli::progress::progress_bar;
 use serde_json::{Value, json};
-use terrell::figure::{Axis, Figure, Panel, Point, Series, Stroke, power_of_ten};
+use terrell::figure::{Axis, Figure, Panel, Point, Series, power_of_ten};
 use terrell::geodesic::Method;
 use terrell::measure::{GeodesicPoint, GeodesicSweep, pareto_front};
 
@@ -77,9 +77,7 @@ pub fn chart(sweep: &GeodesicSweep, quiet: bool) -> Result<Charted, Fault> {
 
 /// Median, quartiles, least and most of a ray.
 fn microseconds(point: &GeodesicPoint) -> [f64; 5] {
-    let times = &point.times;
-    let ([low, high], [least, most]) = (times.quartiles(), times.range());
-    [times.median(), low, high, least, most].map(|time| 1e6 * time.as_secs_f64())
+    point.times.seconds().map(|time| 1e6 * time)
 }
 
 fn integrator(method: Method) -> &'static str {
@@ -127,10 +125,7 @@ fn panel(spin: f64, points: &[&GeodesicPoint], front: &[usize], with_chords: boo
         let hollow = !front.contains(&i);
         let point =
             Point { x, y: point.worst, x_spread: Some([low, high]), label, hollow, ..Point::default() };
-        match series.iter_mut().find(|series| series.name == name) {
-            Some(series) => series.points.push(point),
-            None => series.push(Series { stroke: Stroke::Line, ..Series::points(name, vec![point]) }),
-        }
+        join(&mut series, name, point);
     }
     let hole = if spin == 0.0 { "Schwarzschild".to_owned() } else { format!("Kerr, a = {spin} M") };
     let (title, error) = match (with_chords, spin == 0.0) {
@@ -145,11 +140,6 @@ fn panel(spin: f64, points: &[&GeodesicPoint], front: &[usize], with_chords: boo
         series,
         ..Panel::default()
     }
-}
-
-/// The line of the best.
-pub fn front_of(front: &[usize], place: impl Fn(usize) -> [f64; 2]) -> Series {
-    Series { stroke: Stroke::Front, ..Series::line("Pareto front", front.iter().map(|&i| place(i))) }
 }
 
 fn said_of(spin: f64, front: &[usize], points: &[&GeodesicPoint]) -> String {

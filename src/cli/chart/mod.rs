@@ -16,7 +16,7 @@ use scenes::{Case, Ways};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use table::Table;
-use terrell::figure::Figure;
+use terrell::figure::{Figure, Point, Series, Stroke};
 use terrell::geodesic::Celerity;
 use terrell::measure::{GeodesicSweep, ON_GPU, series_names};
 use terrell::plan::is_of_polygons;
@@ -205,6 +205,20 @@ impl Chart {
         let camera = scene.camera()?;
         Ok(Case { scene, camera })
     }
+}
+
+/// Adds a point to the line of its name, which it begins where there is none.
+fn join(series: &mut Vec<Series>, name: impl Into<String>, point: Point) {
+    let name = name.into();
+    match series.iter_mut().find(|series| series.name == name) {
+        Some(series) => series.points.push(point),
+        None => series.push(Series { stroke: Stroke::Line, ..Series::points(name, vec![point]) }),
+    }
+}
+
+/// The line of the best.
+fn front_of(front: &[usize], place: impl Fn(usize) -> [f64; 2]) -> Series {
+    Series { stroke: Stroke::Front, ..Series::line("Pareto front", front.iter().map(|&i| place(i))) }
 }
 
 /// A series by its name.

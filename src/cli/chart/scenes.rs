@@ -1,6 +1,5 @@
-use super::Charted;
-use super::geodesics::front_of;
 use super::table::Table;
+use super::{Charted, front_of, join};
 use crate::cli::Fault;
 use crate::cli::look::DevelopFlags;
 use crate::cli::progress::progress_bar;
@@ -209,9 +208,7 @@ impl Case {
 
 /// Milliseconds: median, quartiles, least and most.
 fn milliseconds(measured: &Measured) -> Option<[f64; 5]> {
-    let times = measured.frame.as_ref()?;
-    let ([low, high], [least, most]) = (times.quartiles(), times.range());
-    Some([times.median(), low, high, least, most].map(|time| 1e3 * time.as_secs_f64()))
+    Some(measured.frame.as_ref()?.seconds().map(|time| 1e3 * time))
 }
 
 /// Where a point is, with its other times: none if it is not there, or was not timed.
@@ -256,7 +253,7 @@ fn row(case: &Case, point: &SweepPoint, is_best: [bool; 3]) -> [Value; COLUMNS.l
         json!(samples),
         json!(summary::doppler_at(*doppler_at)),
         json!(if point.way.vertices == Vertices::CutF32 { "f32" } else { "f64" }),
-        json!(case.scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum::<usize>()),
+        json!(case.scene.triangle_count()),
         count(&|m| m.pieces),
         number(&|m| Some(1e3 * m.preparation.as_secs_f64())),
         time(0),
@@ -320,10 +317,7 @@ fn panel(error: &Charting, points: &[SweepPoint], front: &[usize]) -> Panel {
         let (name, hollow) = (point.way.series, !front.contains(&i));
         let point =
             Point { x, y, x_spread: Some([low, high]), label: label(&point.way), hollow, ..Point::default() };
-        match series.iter_mut().find(|series| series.name == name) {
-            Some(series) => series.points.push(point),
-            None => series.push(Series { stroke: Stroke::Line, ..Series::points(name, vec![point]) }),
-        }
+        join(&mut series, name, point);
     }
     let times = points.iter().filter_map(place).map(|([x, ..], _)| x);
     let [from, to] = times.fold([f64::INFINITY, 0.0], |[a, b], x| [f64::min(a, x), f64::max(b, x)]);

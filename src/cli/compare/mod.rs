@@ -257,7 +257,7 @@ impl Compare {
             (Some(given), _) => given,
             (None, Some((_, Ok(traced)))) => {
                 let film = std::mem::replace(&mut traced.film, Film::new(0, 0));
-                let corners = Some(Corners::traced(scene, camera, options, &film)?);
+                let corners = Some(Corners::traced(scene, camera, &film)?);
                 own = Reference { corners, ..Reference::from(film) };
                 &own
             }
@@ -273,7 +273,7 @@ impl Compare {
             exposure.of_picture(self.look.develop.tone(coloring), scene, camera, &with, &reference.film)?;
         let size = [reference.film.width, reference.film.height];
         let bodies = summary::bodies_in_words(&summary::gammas(scene, camera));
-        let triangles = scene.bodies.iter().map(|b| b.mesh.triangles.len()).sum();
+        let triangles = scene.triangle_count();
         let (lens, colors) = (camera.lens.projection(), summary::colors_in_words(coloring, &development));
         let mut compared = Compared {
             name: scene.name.clone(),

@@ -1,6 +1,6 @@
 //! Rays around black holes, by how accurately they are integrated.
 
-use super::map::number;
+use super::map::{cells, number};
 use super::{Axis, Map, Planner, QUARTER_PIXEL, Resolution};
 use crate::measure::schwarzschild_deflection;
 use crate::render::{around, around_seen_from};
@@ -123,16 +123,12 @@ fn follow(hole: KerrSchild, (event, k): Start, tolerance: f64) -> End {
 
 /// Rows of errors of what a column's rays are, by tolerances.
 fn table(columns: &[Vec<Probe>], tolerances: &[f64]) -> Cells {
-    (0..tolerances.len() * columns.len())
-        .into_par_iter()
-        .map(|cell| {
-            let settled = || columns[cell % columns.len()].iter().filter(|probe| probe.is_settled());
-            let tolerance = tolerances[cell / columns.len()];
-            let off = settled().map(|probe| probe.error(tolerance)).reduce(Off::worse);
-            let conditioning = settled().map(|probe| probe.conditioning).fold(1.0, f64::max);
-            (off.unwrap_or(Off { error: f64::INFINITY, flagged: false }), conditioning)
-        })
-        .collect()
+    cells(columns, tolerances, |probes, tolerance| {
+        let settled = || probes.iter().filter(|probe| probe.is_settled());
+        let off = settled().map(|probe| probe.error(*tolerance)).reduce(Off::worse);
+        let conditioning = settled().map(|probe| probe.conditioning).fold(1.0, f64::max);
+        (off.unwrap_or(Off { error: f64::INFINITY, flagged: false }), conditioning)
+    })
 }
 
 /// Deflection by a hole that does not rotate, against the closed form.
@@ -152,13 +148,9 @@ fn impact(beyond: &[f64], tolerances: &[f64]) -> Cells {
         let off = off - 2.0 * PI * (off / (2.0 * PI)).round();
         Some((Off::by(off.abs().max(sky.z.abs()) / conditioning), conditioning))
     };
-    (0..tolerances.len() * beyond.len())
-        .into_par_iter()
-        .map(|cell| {
-            let off = off(beyond[cell % beyond.len()], tolerances[cell / beyond.len()]);
-            off.unwrap_or((Off { error: f64::INFINITY, flagged: false }, 1.0))
-        })
-        .collect()
+    cells(beyond, tolerances, |beyond, tolerance| {
+        off(*beyond, *tolerance).unwrap_or((Off { error: f64::INFINITY, flagged: false }, 1.0))
+    })
 }
 
 /// Rays that begin or pass so near to the axis, in radians or masses.

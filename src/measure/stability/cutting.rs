@@ -1,5 +1,6 @@
 //! Triangles moved to where they are seen: as they are, and cut.
 
+use super::map::cells;
 use super::outline::Outline;
 use super::{Axis, Map, Planner, Resolution};
 use crate::apparent::{ApparentMesh, Field, Subdivision};
@@ -11,7 +12,6 @@ use crate::relativity::{ApparentMap, Motion};
 use crate::render::Options;
 use crate::scene::{Aim, Body, Mesh, Scene, View};
 use glam::DVec3;
-use rayon::prelude::*;
 use terrell_geodesic::{Celerity, Event};
 
 /// Edges of the triangle, and how far away its middle appears.
@@ -60,10 +60,7 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     let (sizes, distances) = (resolution.some(&SIZES, 4), resolution.some(&DISTANCES, 3));
     let mut maps = Vec::new();
     for beta in SPEEDS {
-        let cells: Vec<[f64; 2]> = (0..sizes.len() * distances.len())
-            .into_par_iter()
-            .map(|cell| errors(sizes[cell % sizes.len()], distances[cell / sizes.len()], beta))
-            .collect();
+        let cells = cells(&sizes, &distances, |size, distance| errors(*size, *distance, beta));
         for (way, (name, title, planner, words)) in [
             (
                 "uncut",

@@ -1,4 +1,5 @@
 use crate::drawing::number::{significant, superscript};
+use rayon::prelude::*;
 
 /// One side of a [`Map`].
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +40,12 @@ impl Axis {
             None => number(self.values[index]),
         }
     }
+}
+
+/// Something of every cell of a map, row by row from below, on all cores.
+pub(super) fn cells<X: Sync, Y: Sync, T: Send>(x: &[X], y: &[Y], of: impl Fn(&X, &Y) -> T + Sync) -> Vec<T> {
+    let cell = |i: usize| of(&x[i % x.len()], &y[i / x.len()]);
+    (0..x.len() * y.len()).into_par_iter().map(cell).collect()
 }
 
 /// A number of two digits as people write it: "0.25", "10⁻⁸", "3.2·10⁵".

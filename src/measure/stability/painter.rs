@@ -1,5 +1,6 @@
 //! The painter's algorithm where bodies reach into each other.
 
+use super::map::cells;
 use super::{Axis, Map, Planner, Resolution};
 use crate::color::Coloring;
 use crate::film::Film;
@@ -9,7 +10,6 @@ use crate::relativity::Motion;
 use crate::render::{Options, Raster, render};
 use crate::scene::{Aim, Body, Mesh, Scene, View};
 use glam::{DQuat, DVec3};
-use rayon::prelude::*;
 use terrell_geodesic::{Celerity, Event};
 
 /// How much of a plank is beyond the other, which it goes through; below 0, short of it.
@@ -62,12 +62,8 @@ fn shares(depth: f64, beta: f64) -> Option<[f64; 2]> {
 
 pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     let (depths, betas) = (resolution.some(&DEPTHS, 4), resolution.some(&BETAS, 3));
-    let cells: Vec<[f64; 2]> = (0..depths.len() * betas.len())
-        .into_par_iter()
-        .map(|cell| {
-            shares(depths[cell % depths.len()], betas[cell / depths.len()]).unwrap_or([f64::INFINITY; 2])
-        })
-        .collect();
+    let shares = |depth: &f64, beta: &f64| shares(*depth, *beta).unwrap_or([f64::INFINITY; 2]);
+    let cells = cells(&depths, &betas, shares);
     let usual = Options::default().raster;
     [
         (

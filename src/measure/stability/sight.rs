@@ -1,6 +1,6 @@
 //! Lines of sight through triangles at rest, and triangles moved to where they are seen, at high γ.
 
-use super::map::number;
+use super::map::{cells, number};
 use super::outline::Outline;
 use super::place::GAMMAS;
 use super::{Axis, Map, Planner, Resolution};
@@ -14,7 +14,6 @@ use crate::scene::{Aim, Body, Camera, Light, LightKind, Mesh, Scene, View};
 use crate::spectrum::Spectrum;
 use crate::trace::{Look, Paths, Tracer};
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 use terrell_geodesic::{Celerity, Event};
 
 /// Angles of the line of sight to the motion, degrees: 0 follows what recedes.
@@ -169,15 +168,11 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     ]
     .into_iter()
     .map(|(way, name, title, y, done)| {
-        let cells: Vec<(f64, Planner)> = (0..y.len() * gammas.len())
-            .into_par_iter()
-            .map(|cell| {
-                let (gamma, value) = (gammas[cell % gammas.len()], y.values[cell / gammas.len()]);
-                let fixed = if way == 2 { CUT } else { RAYED };
-                let (degrees, size) = if name.ends_with("_size") { (ANGLE, value) } else { (value, fixed) };
-                measured(way, [gamma, degrees, size], resolution)
-            })
-            .collect();
+        let fixed = if way == 2 { CUT } else { RAYED };
+        let cells = cells(&gammas, &y.values, |gamma, value| {
+            let (degrees, size) = if name.ends_with("_size") { (ANGLE, *value) } else { (*value, fixed) };
+            measured(way, [*gamma, degrees, size], resolution)
+        });
         let (errors, planner) = cells.into_iter().unzip();
         let map = Map {
             sheet: "sight",

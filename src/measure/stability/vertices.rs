@@ -1,5 +1,6 @@
 //! Doppler factors worked out at vertices and interpolated between, against those of every pixel.
 
+use super::map::cells;
 use super::wide::dot;
 use super::{Axis, Map, Planner, Resolution};
 use crate::apparent::{ApparentMesh, Field, Subdivision};
@@ -12,7 +13,6 @@ use crate::render::Options;
 use crate::scene::{Aim, Body, Mesh, Paint, Scene, View};
 use crate::spectrum::luminance;
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 use terrell_geodesic::{Celerity, Event, Real, Wide};
 
 /// How large the triangle looks, degrees.
@@ -88,10 +88,7 @@ fn errors(degrees: f64, beta: f64) -> [f64; 3] {
 
 pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     let (angles, betas) = (resolution.some(&ANGLES, 4), resolution.some(&BETAS, 4));
-    let cells: Vec<[f64; 3]> = (0..angles.len() * betas.len())
-        .into_par_iter()
-        .map(|cell| errors(angles[cell % angles.len()], betas[cell / angles.len()]))
-        .collect();
+    let cells = cells(&angles, &betas, |angle, beta| errors(*angle, *beta));
     let usual = Options::default().doppler_at;
     [
         (

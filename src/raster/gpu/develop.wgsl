@@ -5,7 +5,7 @@
 @group(0) @binding(4) var<storage, read> materials: array<Material>;
 // Of tables of colours: three columns a node.
 @group(0) @binding(5) var<storage, read> nodes: array<vec4<f32>>;
-// Colours and texture coordinates of faces and corners, and texels.
+// Colours of materials, faces or corners.
 @group(0) @binding(6) var<storage, read> words: array<u32>;
 @group(0) @binding(7) var<storage, read_write> film: array<Pixel>;
 @group(0) @binding(8) var seen_shapes: texture_2d<u32>;

@@ -264,7 +264,6 @@ impl Gpu {
             let pass = PassRecord {
                 sample: offset.map(|c| c as f32),
                 weight,
-                spread: weight.sqrt(),
                 is_first: u32::from(index == 0),
                 ..*part
             };

@@ -14,12 +14,11 @@ pub(super) struct PassRecord {
     pub projection: u32,
     pub coloring: u32,
     pub weight: f32,
-    pub spread: f32,
     pub unit: f32,
     pub is_first: u32,
     pub exposure: f32,
     pub tone: u32,
-    pub unused: [u32; 2],
+    pub unused: u32,
 }
 
 /// A body's sky.

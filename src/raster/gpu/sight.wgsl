@@ -9,16 +9,14 @@ struct Pass {
     sample: vec2<f32>,
     projection: u32,
     coloring: u32,
-    // What the sample counts, and the part of a pixel it stands for.
+    // What the sample counts.
     weight: f32,
-    spread: f32,
     // Length of the unit distances are in.
     unit: f32,
     is_first: u32,
     // Light is multiplied by this, and goes through this curve.
     exposure: f32,
     tone: u32,
-    unused: vec2<u32>,
 }
 
 const PINHOLE: u32 = 0u;
