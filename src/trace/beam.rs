@@ -1,11 +1,12 @@
 //! Rays of neighbouring pixels, which begin in one point, together.
 
+use super::directed::Directed;
+use super::edges::{Each, Edges, Several, TOGETHER, Window};
 use super::lanes::Lanes;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::x86;
 use super::origin::Origin;
 use super::tree::{Leaf, Node, Tree};
-use crate::light::owns_boundary;
 use glam::DVec3;
 
 /// The most rays of a beam.
@@ -50,132 +51,6 @@ struct Rays {
     found: [f32; RAYS],
 }
 
-/// A triangle as a beam meets it: functions c + a·u + b·v of slopes from the middle.
-struct Edges {
-    /// Positive inside.
-    functions: [[f32; 3]; 3],
-    /// Where an edge itself belongs to the triangle 0, else the least number above.
-    least: [f32; 3],
-    /// 1/t.
-    nearness: [f32; 3],
-}
-
-/// How many triangles are made ready together, side by side in vectors.
-const TOGETHER: usize = 4;
-
-/// A number of each.
-type Each = [f64; TOGETHER];
-
-/// Triangles as a beam meets them, side by side.
-struct Several {
-    /// Whether a ray of the beam can hit it.
-    is_met: [bool; TOGETHER],
-    /// Planes through the origin and an edge, their insides positive: normals in the beam's order.
-    planes: [[Each; 3]; 3],
-    /// Of the middle of the beam.
-    middles: [Each; 3],
-    /// 1/t: in the middle, and by slopes from there.
-    nearness: [Each; 3],
-}
-
-impl Several {
-    #[inline(always)]
-    fn edges(&self, i: usize) -> Edges {
-        let function = |k: usize| {
-            let [_, u, v] = &self.planes[k];
-            [self.middles[k][i] as f32, u[i] as f32, v[i] as f32]
-        };
-        let least = |k: usize| {
-            let [x, y, z] = &self.planes[k];
-            if owns_boundary(DVec3::new(x[i], y[i], z[i])) { 0.0 } else { f32::from_bits(1) }
-        };
-        Edges {
-            functions: [function(0), function(1), function(2)],
-            least: [least(0), least(1), least(2)],
-            nearness: [self.nearness[0][i] as f32, self.nearness[1][i] as f32, self.nearness[2][i] as f32],
-        }
-    }
-}
-
-/// Cross products. Like all that is done with several, loops of plain arithmetic, which compilers make vectors of.
-#[inline(always)]
-fn cross(a: &[Each; 3], b: &[Each; 3]) -> [Each; 3] {
-    let mut product = [Each::default(); 3];
-    for (k, product) in product.iter_mut().enumerate() {
-        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        for i in 0..TOGETHER {
-            product[i] = a[l][i] * b[m][i] - b[l][i] * a[m][i];
-        }
-    }
-    product
-}
-
-#[inline(always)]
-fn dot(a: &[Each; 3], b: &[Each; 3]) -> Each {
-    let mut product = Each::default();
-    for i in 0..TOGETHER {
-        product[i] = a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i];
-    }
-    product
-}
-
-#[inline(always)]
-fn difference(a: &[Each; 3], b: &[Each; 3]) -> [Each; 3] {
-    let mut difference = [Each::default(); 3];
-    for k in 0..3 {
-        for i in 0..TOGETHER {
-            difference[k][i] = a[k][i] - b[k][i];
-        }
-    }
-    difference
-}
-
-/// Rays from the origin of a beam, side by side.
-#[repr(align(64))]
-#[derive(Clone, Copy)]
-pub(super) struct Directed {
-    pub count: usize,
-    pub directions: [[f64; RAYS]; 3],
-    /// 1/s of what they are known to hit already, s in units of the direction; 0 for nothing.
-    pub nearness: [f64; RAYS],
-}
-
-impl Default for Directed {
-    fn default() -> Self {
-        Self { count: 0, directions: [[0.0; RAYS]; 3], nearness: [0.0; RAYS] }
-    }
-}
-
-impl Directed {
-    #[inline]
-    pub fn direction(&self, i: usize) -> DVec3 {
-        DVec3::from_array(self.directions.each_ref().map(|c| c[i]))
-    }
-
-    pub fn push(&mut self, direction: DVec3, nearness: f64) {
-        let i = self.count;
-        self.count += 1;
-        for k in 0..3 {
-            self.directions[k][i] = direction[k];
-        }
-        self.nearness[i] = nearness;
-    }
-
-    /// The way that all of them face; none if they differ.
-    pub fn facing(&self) -> Option<(usize, bool)> {
-        let (longest, backward) = facing(self.direction(0));
-        let sign = if backward { -1.0 } else { 1.0 };
-        let [along, first, second] = [0, 1, 2].map(|k| &self.directions[(longest + k) % 3][..self.count]);
-        let mut all = true;
-        for i in 0..along.len() {
-            let size = sign * along[i];
-            // Of two as long, facing() takes the first, which is no matter here.
-            all &= (size >= first[i].abs()) & (size >= second[i].abs()) & (size > 0.0);
-        }
-        all.then_some((longest, backward))
-    }
-}
-
 /// Hits that differ by less, relative, are compared in f64: f32 is good to a few 10⁻⁷.
 const CLOSE: f32 = 2e-6;
 
@@ -196,20 +71,6 @@ impl Default for Beam {
             stack: Vec::new(),
         }
     }
-}
-
-/// The longest component of a direction, and whether it is negative: rays that agree in that can be one beam.
-#[inline]
-pub(super) fn facing(direction: DVec3) -> (usize, bool) {
-    let size = direction.abs();
-    let longest = if size.x >= size.y && size.x >= size.z {
-        0
-    } else if size.y >= size.z {
-        1
-    } else {
-        2
-    };
-    (longest, direction[longest] < 0.0)
 }
 
 impl Beam {
@@ -397,7 +258,7 @@ impl Beam {
                 (of_all[0][i], of_all[1][i], of_all[2][i]) = (corner.x, corner.y, corner.z);
             }
         }
-        let several = self.several(&corners, one_sided);
+        let several = Several::new(&corners, one_sided, &self.window());
         let mut any = false;
         for (i, number) in numbers.iter().enumerate() {
             if several.is_met[i] {
@@ -430,45 +291,10 @@ impl Beam {
         DVec3::new(self.sign * v[self.order[0]], v[self.order[1]], v[self.order[2]])
     }
 
-    /// Of corners as [`turned`](Self::turned), which keeps or changes their winding with the sign. None is met that is
-    /// seen edge-on or from the back it does not have.
     #[inline(always)]
-    fn several(&self, corners: &[[Each; 3]; 3], one_sided: [bool; TOGETHER]) -> Several {
-        let [a, b, c] = corners;
-        let mut planes = [cross(b, c), cross(c, a), cross(a, b)];
-        let volume = dot(a, &planes[0]);
-        let normal = cross(&difference(b, a), &difference(c, a));
-        let distance = dot(&normal, a);
-        let [u0, v0] = self.middle;
-        let half_u = 0.5 * (self.range[0][1] - self.range[0][0]);
-        let half_v = 0.5 * (self.range[1][1] - self.range[1][0]);
-        let (mut flip, mut is_met) = (Each::default(), [false; TOGETHER]);
-        for i in 0..TOGETHER {
-            flip[i] = if volume[i] < 0.0 { -1.0 } else { 1.0 };
-            let seen = !one_sided[i] | (volume[i] * self.sign < 0.0);
-            // Also false for NaN.
-            is_met[i] = seen & (volume[i].abs() > 0.0) & (volume[i].abs() < f64::INFINITY);
-        }
-        let mut middles = [Each::default(); 3];
-        for (plane, middle) in planes.iter_mut().zip(&mut middles) {
-            for i in 0..TOGETHER {
-                let [x, u, v] = [plane[0][i] * flip[i], plane[1][i] * flip[i], plane[2][i] * flip[i]];
-                [plane[0][i], plane[1][i], plane[2][i]] = [x, u, v];
-                middle[i] = x + (u * u0 + v * v0);
-                // By more than f32 leaves over.
-                let most = middle[i] + (u.abs() * half_u + v.abs() * half_v) * 1.000_001;
-                is_met[i] &= most >= 0.0;
-            }
-        }
-        let mut nearness = [Each::default(); 3];
-        for i in 0..TOGETHER {
-            let over = 1.0 / distance[i];
-            is_met[i] &= over.abs() < f64::INFINITY;
-            nearness[0][i] = (normal[0][i] + (normal[1][i] * u0 + normal[2][i] * v0)) * over;
-            nearness[1][i] = normal[1][i] * over;
-            nearness[2][i] = normal[2][i] * over;
-        }
-        Several { is_met, planes, middles, nearness }
+    fn window(&self) -> Window {
+        let half = [0.5 * (self.range[0][1] - self.range[0][0]), 0.5 * (self.range[1][1] - self.range[1][0])];
+        Window { sign: self.sign, middle: self.middle, half }
     }
 
     /// Tests all rays; whether any is hit nearer than before, and whether any cannot be told in f32.
@@ -626,6 +452,7 @@ impl Boxes {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::directed::facing;
     use super::super::ray::meet;
     use super::*;
     use crate::relativity::{ApparentMap, Motion};

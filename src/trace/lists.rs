@@ -238,7 +238,7 @@ mod tests {
                     continue;
                 }
                 let Some(sight) = lens.direction(DVec2::new(x + 0.5, y + 0.5)) else { continue };
-                let mut rays = beam::Directed::default();
+                let mut rays = crate::trace::directed::Directed::default();
                 rays.push(target.rest_direction(sight, sight.length()), 0.0);
                 let origin = crate::trace::origin::Origin::of_observer(&target.map);
                 let mut beam = beam::Beam::default();

@@ -16,6 +16,8 @@ mod beam;
 mod bundle;
 mod chord;
 mod curved;
+mod directed;
+mod edges;
 mod emitters;
 mod lanes;
 mod lists;

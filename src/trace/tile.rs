@@ -1,5 +1,6 @@
-use super::beam::{Beam, Directed, NONE, RAYS, SAME, facing};
+use super::beam::{Beam, NONE, RAYS, SAME};
 use super::bundle::Bundle;
+use super::directed::{Directed, facing};
 use super::lists::Lists;
 use super::origin::Origin;
 use super::path::{self, Vertex, World};

@@ -1,16 +1,15 @@
+use super::GpuError;
+use super::guard::{Guard, one_line, wait};
 use super::load::Load;
+use super::pipelines::{DEPTH, Pipelines, SEEN};
 use super::records::{PassRecord, PixelRecord};
-use super::{GpuError, shaders};
 use crate::color::Coloring;
 use crate::film::{Film, Samples};
 use crate::scene::{Lens, Projection};
 use crate::tone::{Development, Tone};
 use bytemuck::Pod;
 use rayon::prelude::*;
-use std::future::Future;
-use std::pin::pin;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-use std::task::{Context, Poll, Waker};
 
 /// A graphics processor, ready to draw.
 #[derive(Debug)]
@@ -26,33 +25,11 @@ pub struct Gpu {
     lost: Arc<OnceLock<String>>,
 }
 
-#[derive(Debug)]
-struct Pipelines {
-    quads: wgpu::RenderPipeline,
-    polygons: wgpu::RenderPipeline,
-    develop: wgpu::ComputePipeline,
-    tone: wgpu::ComputePipeline,
-}
-
 /// The longest side of a part of a picture.
 const PART: u32 = 2048;
 
 /// Pixels of the side of a shader's work group.
 const GROUP: u32 = 8;
-
-const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-
-/// What wgpu's futures need natively: they are ready, or soon will be.
-fn wait<T>(future: impl Future<Output = T>) -> T {
-    let mut future = pin!(future);
-    loop {
-        match future.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
-            Poll::Ready(value) => return value,
-            Poll::Pending => std::thread::yield_now(),
-        }
-    }
-}
 
 /// What a part of a picture is drawn on.
 #[derive(Debug)]
@@ -487,38 +464,6 @@ impl Gpu {
     }
 }
 
-/// Catches what goes wrong on a device, which otherwise would be a panic.
-struct Guard(Vec<wgpu::ErrorScopeGuard>);
-
-impl Guard {
-    fn new(device: &wgpu::Device) -> Self {
-        use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
-        Self([Validation, Internal, OutOfMemory].map(|filter| device.push_error_scope(filter)).into())
-    }
-
-    fn finish(mut self, adapter: &str, lost: &OnceLock<String>) -> Result<(), GpuError> {
-        let mut fault = None;
-        // The innermost first.
-        while let Some(scope) = self.0.pop() {
-            fault = wait(scope.pop()).or(fault);
-        }
-        let adapter = adapter.to_owned();
-        if let Some(why) = lost.get() {
-            return Err(GpuError::Lost { adapter, why: why.clone() });
-        }
-        match fault {
-            None => Ok(()),
-            Some(wgpu::Error::OutOfMemory { .. }) => Err(GpuError::OutOfMemory { adapter }),
-            Some(error) => Err(GpuError::Refused { adapter, why: one_line(&error) }),
-        }
-    }
-}
-
-/// What an error says, on one line.
-fn one_line(error: &impl std::fmt::Display) -> String {
-    error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
 /// What all samples and parts have in common.
 fn pass(lens: &Lens, coloring: Coloring, unit: f64) -> PassRecord {
     PassRecord {
@@ -552,60 +497,4 @@ fn compute(
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, group, &[]);
     pass.dispatch_workgroups(width.div_ceil(GROUP), height.div_ceil(GROUP), 1);
-}
-
-impl Pipelines {
-    fn new(device: &wgpu::Device) -> Self {
-        let [raster, develop, tone] = shaders().map(|(name, source)| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(name),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            })
-        });
-        let compute = |module, entry| {
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: None,
-                module,
-                entry_point: Some(entry),
-                compilation_options: Default::default(),
-                cache: None,
-            })
-        };
-        let draw = |vertex, fragment| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(vertex),
-                layout: None,
-                vertex: wgpu::VertexState {
-                    module: &raster,
-                    entry_point: Some(vertex),
-                    compilation_options: Default::default(),
-                    buffers: &[],
-                },
-                primitive: Default::default(),
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: DEPTH,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::Greater),
-                    stencil: Default::default(),
-                    bias: Default::default(),
-                }),
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &raster,
-                    entry_point: Some(fragment),
-                    compilation_options: Default::default(),
-                    targets: &[Some(SEEN.into())],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
-        Self {
-            quads: draw("quad", "inside_quad"),
-            polygons: draw("polygon", "inside_polygon"),
-            develop: compute(&develop, "develop"),
-            tone: compute(&tone, "develop_to_picture"),
-        }
-    }
 }

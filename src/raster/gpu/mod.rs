@@ -3,14 +3,16 @@
 //! What needs more than single precision is done before anything is uploaded: the observer's place in the rest frame, the
 //! motion, and for every triangle the functions of a line of sight that say whether and where it is met. They are linear
 //! in light-cone coordinates of the body's motion, in which single precision is enough at high γ, too
-//! ([`MOST_GAMMA_ON_GPU`](crate::plan::MOST_GAMMA_ON_GPU)). A first pass finds the nearest triangle for one sample of every pixel; a second works out what is seen of it, and
-//! adds it to the film. So memory does not grow with the samples. Pictures larger than a target are drawn in parts.
+//! ([`MOST_GAMMA_ON_GPU`](crate::plan::MOST_GAMMA_ON_GPU)). A first pass finds the nearest triangle for one sample of every
+//! pixel; a second works out what is seen of it, and adds it to the film. So memory does not grow with the samples. Pictures larger than a target are drawn in parts.
 
 mod cone;
 mod device;
 mod error;
+mod guard;
 mod load;
 mod looks;
+mod pipelines;
 mod records;
 mod shaders;
 
