@@ -5,6 +5,7 @@ use crate::plan::{is_worth_a_gpu, not_on_gpu, samples_to_draw};
 #[cfg(feature = "gpu")]
 use crate::raster::gpu::Gpu;
 use crate::scene::{Camera, Scene};
+use std::path::Path;
 #[cfg(feature = "gpu")]
 use std::sync::Arc;
 
@@ -30,6 +31,9 @@ impl Options {
         let is_asked = self.raster == Raster::Wgpu;
         if !is_asked && !is_worth_a_gpu(cameras, self.samples) {
             return Err(OnCpu::NotWorth(samples_to_draw(cameras, self.samples)));
+        }
+        if !is_asked && !may_have_hardware() {
+            return Err(OnCpu::NoHardware);
         }
         let gpu = open().map_err(OnCpu::None)?;
         if is_asked || gpu.is_hardware() { Ok(gpu) } else { Err(OnCpu::Software(gpu.name().to_owned())) }
@@ -57,7 +61,10 @@ pub enum OnCpu {
     /// So many samples are too few.
     #[error("not looked for: {0} samples are drawn sooner than one is opened")]
     NotWorth(u64),
-    /// There is none.
+    /// The system knows of none.
+    #[error("this machine has none")]
+    NoHardware,
+    /// None could be opened.
     #[error(transparent)]
     None(RenderError),
     /// The one there is.
@@ -65,24 +72,17 @@ pub enum OnCpu {
     Software(String),
 }
 
-/// A graphics processor that pictures can be drawn on.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Adapter {
-    /// What it calls itself.
-    pub name: String,
-    /// Whether it is more than a program on the CPU.
-    pub is_hardware: bool,
+/// Whether there is a graphics processor that is more than a program on the CPU.
+pub fn has_gpu() -> bool {
+    may_have_hardware() && open().is_ok_and(|device| device.is_hardware())
 }
 
-impl Adapter {
-    /// The one there is.
-    ///
-    /// # Errors
-    /// Why there is none, for people to read.
-    pub fn find() -> Result<Self, String> {
-        let device = open().map_err(|e| e.to_string())?;
-        Ok(Self { name: device.name().to_owned(), is_hardware: device.is_hardware() })
-    }
+/// Whether it is worth asking drivers for a graphics processor. Where Linux shows none there is none, and drivers of software
+/// need not be started, which takes a while, and complain of desktops that are not there.
+fn may_have_hardware() -> bool {
+    const NODES: [&str; 5] =
+        ["/dev/dri", "/dev/nvidiactl", "/dev/dxg", "/dev/kgsl-3d0", "/dev/mali0"];
+    !cfg!(target_os = "linux") || NODES.iter().any(|node| Path::new(node).exists())
 }
 
 #[cfg(feature = "gpu")]

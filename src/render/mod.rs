@@ -14,7 +14,7 @@ use crate::relativity::ApparentMap;
 use crate::scene::{Camera, Eye, EyeError, Mesh, Scene, Spacetime, SpacetimeError};
 use crate::trace::{Look, Paths, Traced, Tracer};
 use device::Device;
-pub use device::{Adapter, OnCpu};
+pub use device::{OnCpu, has_gpu};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use terrell_geodesic::{Accuracy, Curved, KerrSchild};

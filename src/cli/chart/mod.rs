@@ -20,7 +20,7 @@ use terrell::figure::{Figure, Point, Series, Stroke};
 use terrell::geodesic::Celerity;
 use terrell::measure::{GeodesicSweep, ON_GPU, series_names};
 use terrell::plan::is_of_polygons;
-use terrell::render::{Adapter, Options};
+use terrell::render::{Options, has_gpu};
 use terrell::scene::{Choice, Scene, Speed, builtin_scenes};
 
 /// Speed against accuracy, measured and drawn: every method, or every way to follow light past a black hole
@@ -161,7 +161,7 @@ impl Chart {
         if !self.methods.is_empty() {
             return self.methods.clone();
         }
-        let has_gpu = Adapter::find().is_ok_and(|adapter| adapter.is_hardware);
+        let has_gpu = has_gpu();
         series_names().into_iter().filter(|name| has_gpu || !ON_GPU.contains(name)).collect()
     }
 
