@@ -69,6 +69,7 @@ pub mod relativity;
 pub mod render;
 pub mod scene;
 pub mod spectrum;
+pub mod teach;
 pub mod tone;
 pub mod trace;
 pub mod transform;

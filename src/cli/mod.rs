@@ -16,6 +16,7 @@ mod shooting;
 mod source;
 mod stop;
 mod summary;
+mod teach;
 mod transform;
 mod values;
 mod velocity;
@@ -41,7 +42,8 @@ const EXAMPLES: &str = "Examples:
   terrell transform statue.glb --beta 0.9          its apparent shape, for other programs
   terrell locate --beta 0.9,0,0 1,2,3              where one point is seen
   terrell compare street                           every method on one scene: differences and times
-  terrell chart gate --beta 0.5,0.9                speed against accuracy, drawn";
+  terrell chart gate --beta 0.5,0.9                speed against accuracy, drawn
+  terrell teach cube                               a lesson; with --html -o DIR, a page with pictures and films";
 
 #[derive(Subcommand)]
 enum Command {
@@ -52,6 +54,7 @@ enum Command {
     Compare(Box<compare::Compare>),
     Chart(Box<chart::Chart>),
     Scenes(scenes::Scenes),
+    Teach(teach::Teach),
     Completions(completions::Completions),
 }
 
@@ -82,6 +85,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Compare(compare) => compare.run(),
         Command::Chart(chart) => chart.run(),
         Command::Scenes(scenes) => scenes.run(),
+        Command::Teach(teach) => teach.run(),
         Command::Completions(completions) => completions.run(),
     };
     match done {
@@ -98,9 +102,13 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// "error:", in red on a terminal that has colours and whose user has not asked for none (NO_COLOR).
+/// "error:", in red where there are colours.
 fn error_mark() -> &'static str {
+    if is_colored(&std::io::stderr()) { "\x1b[1;31merror:\x1b[0m" } else { "error:" }
+}
+
+/// Whether something is a terminal that has colours and whose user has not asked for none (NO_COLOR).
+fn is_colored(to: &impl IsTerminal) -> bool {
     let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-    let colored = !dumb && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
-    if colored && std::io::stderr().is_terminal() { "\x1b[1;31merror:\x1b[0m" } else { "error:" }
+    !dumb && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty()) && to.is_terminal()
 }

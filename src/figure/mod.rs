@@ -20,3 +20,4 @@ pub use layout::Figure;
 pub use marker::{INKS, Marker};
 pub use page::{Anchor, Ink, Item, Page};
 pub use panel::{Panel, Point, Series, Stroke};
+pub(crate) use svg::{base64, escaped};

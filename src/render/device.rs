@@ -80,8 +80,7 @@ pub fn has_gpu() -> bool {
 /// Whether it is worth asking drivers for a graphics processor. Where Linux shows none there is none, and drivers of software
 /// need not be started, which takes a while, and complain of desktops that are not there.
 fn may_have_hardware() -> bool {
-    const NODES: [&str; 5] =
-        ["/dev/dri", "/dev/nvidiactl", "/dev/dxg", "/dev/kgsl-3d0", "/dev/mali0"];
+    const NODES: [&str; 5] = ["/dev/dri", "/dev/nvidiactl", "/dev/dxg", "/dev/kgsl-3d0", "/dev/mali0"];
     !cfg!(target_os = "linux") || NODES.iter().any(|node| Path::new(node).exists())
 }
 

@@ -29,6 +29,7 @@ pub use builtin::{Builtin, NoSuchScene, builtin_mesh, builtin_meshes, builtin_sc
 pub use camera::{Camera, Lens, LensError, MAX_PIXELS, MAX_SIDE, Projection};
 pub use clip::{Between, Blend, Clip, Joint, Track};
 pub use eye::{DistantEye, Eye, EyeError};
+pub(crate) use file::did_you_mean;
 pub use file::{SceneError, parse_scene};
 pub use fingerprint::Fingerprint;
 pub use framing::{authored, framed};

@@ -8,7 +8,7 @@ mod spacetime;
 mod tables;
 
 pub use source::SceneError;
-pub(super) use source::did_you_mean;
+pub(crate) use source::did_you_mean;
 
 use super::import::CLAY_NOTE;
 use super::{Aim, Body, LensError, Mesh, Paint, Projection, Scene, View, ViewError};

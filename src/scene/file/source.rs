@@ -146,10 +146,7 @@ fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&
 }
 
 /// A hint at the nearest of the names, or at all of them.
-pub(in crate::scene) fn did_you_mean<'a>(
-    word: &str,
-    names: impl IntoIterator<Item = &'a str> + Clone,
-) -> String {
+pub(crate) fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> String {
     match nearest(word, names.clone()) {
         Some(name) => format!("did you mean '{name}'?"),
         None => match names.into_iter().collect::<Vec<_>>().join(", ") {

@@ -1,0 +1,157 @@
+//! A file a lesson.
+
+mod cube;
+mod doppler;
+mod gate;
+mod lattice;
+mod rods;
+mod searchlight;
+mod seeing;
+mod shadows;
+
+use super::lecture::Lecture;
+use super::plate::{Shot, TeachError};
+use crate::relativity::{ApparentMap, Motion};
+use crate::scene::{Scene, Speed, builtin_scene, did_you_mean, parse_scene};
+use glam::DVec3;
+use std::path::Path;
+use terrell_geodesic::{Celerity, Event, Tetrad};
+
+/// Something to learn.
+#[derive(Clone, Copy, Debug)]
+pub struct Lesson {
+    /// As it is called in commands.
+    pub name: &'static str,
+    /// As it is called on its page.
+    pub title: &'static str,
+    /// What it is about, in a line.
+    pub about: &'static str,
+    /// Where it is from: "the paper" is Nollert, Kraus and Ruder (2000).
+    pub source: &'static str,
+    make: fn() -> Result<Lecture, TeachError>,
+}
+
+static LESSONS: [Lesson; 8] = [
+    Lesson {
+        name: "seeing",
+        title: "Seeing is not measuring",
+        about: "where things are, where they look to be, and why the two differ",
+        source: "The paper, section 2.1; G. Gamow, Mr Tompkins in Wonderland (1940)",
+        make: seeing::lecture,
+    },
+    Lesson {
+        name: "rods",
+        title: "Rods become hyperbolas",
+        about: "the map from a point to where it is seen, and what it does to straight lines",
+        source: "The paper, Eqs. 1 and 2",
+        make: rods::lecture,
+    },
+    Lesson {
+        name: "lattice",
+        title: "The lattice",
+        about: "a whole grid of rods and balls, coming, passing and going, at four speeds",
+        source: "The paper, Fig. 1",
+        make: lattice::lecture,
+    },
+    Lesson {
+        name: "cube",
+        title: "The cube that seems to turn",
+        about: "a shear that looks like a turn by arcsin β, and when it does not",
+        source: "The paper, Figs. 2, 4 and 5; J. Terrell, Phys. Rev. 116 (1959) 1041",
+        make: cube::lecture,
+    },
+    Lesson {
+        name: "gate",
+        title: "The gate",
+        about: "flying through it at 0.99c, forward and looking back",
+        source: "The paper, Fig. 3",
+        make: gate::lecture,
+    },
+    Lesson {
+        name: "doppler",
+        title: "Doppler: one factor, two angles",
+        about: "which angle belongs into which formula, and what becomes of colours",
+        source: "The paper, Eqs. 3 and 4",
+        make: doppler::lecture,
+    },
+    Lesson {
+        name: "searchlight",
+        title: "The searchlight",
+        about: "why what comes is bright and what goes is dark, and what a screen can show of it",
+        source: "The paper, Eq. 5",
+        make: searchlight::lecture,
+    },
+    Lesson {
+        name: "shadows",
+        title: "Shadows need rays",
+        about: "shadows that are late, seen twice, and faster than light",
+        source: "The paper, section 2.2.4",
+        make: shadows::lecture,
+    },
+];
+
+/// All lessons, in the order of the course.
+pub fn lessons() -> &'static [Lesson] {
+    &LESSONS
+}
+
+/// There is no lesson of that name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no lesson '{name}'; {hint}")]
+pub struct NoSuchLesson {
+    /// What was asked for.
+    pub name: String,
+    /// The nearest name, or all there are.
+    pub hint: String,
+}
+
+/// A lesson by its name.
+///
+/// # Errors
+/// If there is none of that name.
+pub fn lesson(name: &str) -> Result<&'static Lesson, NoSuchLesson> {
+    LESSONS.iter().find(|lesson| lesson.name == name).ok_or_else(|| NoSuchLesson {
+        name: name.to_owned(),
+        hint: did_you_mean(name, LESSONS.iter().map(|lesson| lesson.name)),
+    })
+}
+
+impl Lesson {
+    /// Works it out.
+    ///
+    /// # Errors
+    /// If one of its scenes cannot be.
+    pub fn lecture(&self) -> Result<Lecture, TeachError> {
+        (self.make)()
+    }
+}
+
+/// What an observer at rest sees of a body that moves along x, whose origin is where the observer is at that moment:
+/// offsets from the observer are the body's own coordinates.
+fn passing(beta: f64) -> Result<ApparentMap, TeachError> {
+    let motion = Motion { celerity: Celerity::from_beta(DVec3::X * beta)?, origin: Event::origin() };
+    Ok(ApparentMap::new(&motion, &Tetrad::of_world(Event::origin())))
+}
+
+/// A scene that ships, at another speed.
+fn shipped(name: &str, beta: f64) -> Result<Shot, TeachError> {
+    let mut scene = builtin_scene(name)?.scene();
+    set_beta(&mut scene, beta)?;
+    Ok(Shot::new(scene))
+}
+
+/// A scene of a lesson's own, at a speed.
+fn own(toml: &str, beta: f64) -> Result<Shot, TeachError> {
+    let mut scene = parse_scene(toml, Path::new("lesson.toml"))?;
+    set_beta(&mut scene, beta)?;
+    Ok(Shot::new(scene))
+}
+
+fn set_beta(scene: &mut Scene, beta: f64) -> Result<(), TeachError> {
+    scene.set_speed(Speed::Along(Celerity::from_beta(DVec3::X * beta)?.magnitude()))?;
+    // Nothing is ever abreast that does not move.
+    if beta == 0.0 {
+        scene.view.nearest = None;
+    }
+    Ok(())
+}

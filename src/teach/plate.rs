@@ -1,0 +1,296 @@
+use crate::color::Coloring;
+use crate::drawing::{Overlay, OverlayOptions};
+use crate::exposure::Exposure;
+use crate::figure::Figure;
+use crate::film::Film;
+use crate::picture::{Movie, MovieError, MovieFormat, pixels_srgb, write_png_pixels};
+use crate::plan::{Method, cheapest};
+use crate::render::{Options, RenderError, render_again};
+use crate::scene::{AnimationError, Camera, LensError, NoSuchScene, Scene, SceneError, ViewError};
+use crate::tone::Tone;
+use std::fmt::{Debug, Formatter};
+use terrell_geodesic::{CelerityError, TetradError};
+
+/// Something to see, not drawn yet.
+#[derive(Debug)]
+pub struct Plate {
+    /// Of its files, without ending.
+    pub name: String,
+    /// What it shows.
+    pub caption: String,
+    /// How it is made.
+    pub what: What,
+}
+
+/// How something to see is made.
+#[derive(Debug)]
+pub enum What {
+    /// A picture of a scene.
+    Shot(Box<Shot>),
+    /// A figure.
+    Figure(Box<Figure>),
+    /// A film.
+    Reel(Reel),
+}
+
+/// A scene and how it is photographed.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// What is there, its view's moment included.
+    pub scene: Scene,
+    /// What a pixel shows.
+    pub coloring: Coloring,
+    /// How bright; if not said, as is usual.
+    pub exposure: Option<Exposure>,
+    /// The curve from light to what is shown; if not said, as is usual.
+    pub tone: Option<Tone>,
+    /// How what a pixel sees is found; if not said, by the cheapest way that is right.
+    pub method: Option<Method>,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// What is drawn on top.
+    pub overlay: OverlayOptions,
+}
+
+/// Frames one after the other.
+pub struct Reel {
+    /// How many there are.
+    pub frames: usize,
+    /// How many are shown in a second.
+    pub fps: f64,
+    /// Draws one.
+    pub frame: Box<Frame>,
+}
+
+/// Draws the frame of a number: width, height, and three bytes of sRGB a pixel.
+pub type Frame = dyn Fn(usize) -> Result<Pixels, TeachError>;
+
+/// Width, height, and three bytes of sRGB a pixel.
+pub type Pixels = (u32, u32, Vec<u8>);
+
+/// A file to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Drawn {
+    /// Of what kind it is.
+    pub kind: Kind,
+    /// What it holds.
+    pub bytes: Vec<u8>,
+}
+
+/// Kinds of files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A picture.
+    Png,
+    /// A figure of lines and letters.
+    Svg,
+    /// A film.
+    Mp4,
+}
+
+/// Why a lesson's picture could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum TeachError {
+    /// A scene that could not be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// A camera that cannot be.
+    #[error(transparent)]
+    View(#[from] ViewError),
+    /// A scene that is none.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A scene that does not ship.
+    #[error(transparent)]
+    NoSuchScene(#[from] NoSuchScene),
+    /// A velocity that cannot be.
+    #[error(transparent)]
+    Celerity(#[from] CelerityError),
+    /// A lens that cannot be.
+    #[error(transparent)]
+    Lens(#[from] LensError),
+    /// Axes that cannot be.
+    #[error(transparent)]
+    Tetrad(#[from] TetradError),
+    /// A film that cannot be.
+    #[error(transparent)]
+    Animation(#[from] AnimationError),
+    /// A film that could not be written.
+    #[error(transparent)]
+    Movie(#[from] MovieError),
+    /// A picture that could not be written.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+    /// A page without room.
+    #[error("a page of no size")]
+    Empty,
+}
+
+impl Kind {
+    /// The ending of a file's name.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Svg => "svg",
+            Self::Mp4 => "mp4",
+        }
+    }
+
+    /// What it is to a browser.
+    pub(super) fn media_type(self) -> &'static str {
+        match self {
+            Self::Png => "image/png",
+            Self::Svg => "image/svg+xml",
+            Self::Mp4 => "video/mp4",
+        }
+    }
+}
+
+impl Plate {
+    pub(super) fn shot(name: &str, caption: impl Into<String>, shot: Shot) -> Self {
+        Self { name: name.into(), caption: caption.into(), what: What::Shot(Box::new(shot)) }
+    }
+
+    pub(super) fn figure(name: &str, caption: impl Into<String>, figure: Figure) -> Self {
+        Self { name: name.into(), caption: caption.into(), what: What::Figure(Box::new(figure)) }
+    }
+
+    pub(super) fn reel(name: &str, caption: impl Into<String>, reel: Reel) -> Self {
+        Self { name: name.into(), caption: caption.into(), what: What::Reel(reel) }
+    }
+
+    /// Makes its files, the one to be shown on pages first.
+    ///
+    /// # Errors
+    /// If it cannot be drawn.
+    pub fn draw(&self) -> Result<Vec<Drawn>, TeachError> {
+        Ok(match &self.what {
+            What::Shot(shot) => vec![png(shot.pixels()?)?],
+            What::Figure(figure) => {
+                let page = figure.page();
+                let bytes = page.png(2.0).ok_or(TeachError::Empty)?;
+                vec![
+                    Drawn { kind: Kind::Svg, bytes: page.svg().into_bytes() },
+                    Drawn { kind: Kind::Png, bytes },
+                ]
+            }
+            What::Reel(reel) => vec![Drawn { kind: Kind::Mp4, bytes: reel.film()? }],
+        })
+    }
+}
+
+fn png((width, height, pixels): Pixels) -> Result<Drawn, TeachError> {
+    let mut bytes = Vec::new();
+    write_png_pixels(width, height, &pixels, &mut bytes)?;
+    Ok(Drawn { kind: Kind::Png, bytes })
+}
+
+/// Pixels across and down of a lesson's pictures.
+const SIZE: [u32; 2] = [640, 400];
+
+impl Shot {
+    /// Of a scene's shapes, by the colours surfaces have.
+    pub fn new(mut scene: Scene) -> Self {
+        scene.view.size = SIZE;
+        let (exposure, tone, method, overlay) = Default::default();
+        Self { scene, coloring: Coloring::Geometry, exposure, tone, method, samples: 4, overlay }
+    }
+
+    /// The same with another coloring.
+    pub fn colored(self, coloring: Coloring) -> Self {
+        Self { coloring, ..self }
+    }
+
+    fn options(&self) -> Options {
+        let method = self.method.unwrap_or_else(|| cheapest(&self.scene, self.coloring).0);
+        Options { method, coloring: self.coloring, samples: self.samples, ..Options::default() }
+    }
+
+    fn tone(&self) -> Tone {
+        self.tone.unwrap_or(if self.coloring.is_beamed() { Tone::Filmic } else { Tone::Linear })
+    }
+
+    fn exposure(&self) -> Exposure {
+        self.exposure.unwrap_or_else(|| Exposure::usual(self.coloring, &self.scene))
+    }
+
+    /// Draws it.
+    ///
+    /// # Errors
+    /// If its scene cannot be drawn.
+    pub fn pixels(&self) -> Result<Pixels, TeachError> {
+        let camera = self.scene.camera()?;
+        let frames = self.frames(vec![camera])?;
+        frames(0)
+    }
+
+    /// As a film of the scene's own animation, or of the usual one, in so many frames.
+    ///
+    /// # Errors
+    /// If there is no such film, or it cannot be metered.
+    pub fn reel(mut self, frames: u32, fps: f64) -> Result<Reel, TeachError> {
+        let mut animation = match self.scene.animation.take() {
+            Some(animation) => animation,
+            None => crate::scene::Animation::usual(&self.scene)?,
+        };
+        animation.frames = frames;
+        let cameras = animation.cameras(&self.scene)?;
+        Ok(Reel { frames: cameras.len(), fps, frame: Box::new(self.frames(cameras)?) })
+    }
+
+    /// What draws the pictures of these cameras, at one exposure.
+    fn frames(
+        &self,
+        cameras: Vec<Camera>,
+    ) -> Result<impl Fn(usize) -> Result<Pixels, TeachError> + use<>, TeachError> {
+        let options = self.options();
+        let shot = self.clone();
+        let prepared = options.prepare(&shot.scene, &cameras)?;
+        let development = self.exposure().of_film(self.tone(), &self.scene, &cameras, &options)?;
+        let overlay = if shot.overlay == OverlayOptions::default() {
+            None
+        } else {
+            Overlay::new(&shot.scene, shot.overlay.clone()).ok()
+        };
+        Ok(move |i: usize| {
+            let camera = &cameras[i];
+            let mut film = Film::new(0, 0);
+            render_again(&shot.scene, camera, &options, &prepared, &mut film, |_| ())?;
+            let mut pixels = pixels_srgb(&film, &development);
+            if let Some(overlay) = &overlay {
+                let (scene, tolerance) = (&shot.scene, options.tolerance);
+                let coloring = shot.coloring;
+                let shot =
+                    crate::drawing::Shot { scene, camera, film: &film, tolerance, coloring, development };
+                overlay.draw(&mut pixels, &shot);
+            }
+            Ok((film.width, film.height, pixels))
+        })
+    }
+}
+
+impl Reel {
+    /// Of figures, drawn frame by frame.
+    pub(super) fn of_figures(frames: usize, fps: f64, figure: impl Fn(usize) -> Figure + 'static) -> Self {
+        let frame = move |i: usize| figure(i).page().pixels(1.0).ok_or(TeachError::Empty);
+        Self { frames, fps, frame: Box::new(frame) }
+    }
+
+    /// The film, as MP4.
+    fn film(&self) -> Result<Vec<u8>, TeachError> {
+        let (width, height, first) = (self.frame)(0)?;
+        let to = std::io::Cursor::new(Vec::new());
+        let mut movie = Movie::new(MovieFormat::Mp4, to, width, height, self.fps)?;
+        movie.push(&first)?;
+        for i in 1..self.frames {
+            movie.push(&(self.frame)(i)?.2)?;
+        }
+        Ok(movie.finish()?.into_inner())
+    }
+}
+
+impl Debug for Reel {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Reel").field("frames", &self.frames).field("fps", &self.fps).finish_non_exhaustive()
+    }
+}
