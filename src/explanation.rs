@@ -3,7 +3,7 @@
 use crate::color::Coloring;
 use crate::light::has_shadows;
 use crate::plan::{MOST_GAMMA, Method, greatest_gamma, has_reflections};
-use crate::render::Options;
+use crate::render::{Options, Raster};
 use crate::scene::{Camera, Scene};
 use crate::trace::Tracer;
 use std::fmt::{Display, Formatter};
@@ -123,7 +123,10 @@ impl Subject<'_> {
             Method::Exact => {
                 let by = match Tracer::is_listed(scene, cameras.len()) {
                     true => "by lists of where triangles may be seen, which are many for so few pictures",
-                    false => "through boxes around triangles, which are few, or pictures many",
+                    false if Tracer::is_listed(scene, 1) => {
+                        "through boxes around triangles, as pays for so many pictures"
+                    }
+                    false => "through boxes around triangles, which are few",
                 };
                 let shadows = match has_shadows(scene) && options.coloring != Coloring::Doppler {
                     true => "; shadows by rays from what is seen",
@@ -151,6 +154,7 @@ impl Subject<'_> {
     fn devices(&self) -> Vec<Verdict> {
         let found = self.options.device(self.scene, self.cameras);
         let cpu = match found {
+            Ok(_) if self.options.raster == Raster::Wgpu => "right for all scenes; the other is asked for",
             Ok(_) => "right for all scenes; the graphics processor is quicker here",
             Err(_) => "right for all scenes",
         };

@@ -227,3 +227,17 @@ fn nothing_that_was_read_is_written_over() {
         assert!(said.contains("no plain file"), "{said}");
     }
 }
+
+#[test]
+fn films_tell_of_their_rays_and_noise() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let small = ["--size=32x18", "--frames=2", "--samples=4", "--json=told.json", "-o", "box.gif"];
+    let said = good(&[&["animate", "box"], &small[..]].concat(), here);
+    assert!(said.contains("noisiest frame"), "{said}");
+    let told: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(here.join("told.json")).unwrap()).unwrap();
+    assert_eq!(told["rays"]["from_camera"], 2 * 4 * 32 * 18, "{told:#}");
+    assert!(told["rays"]["noise"].as_f64().is_some_and(|noise| noise > 0.0 && noise < 2.0), "{told:#}");
+    assert_eq!(told["frames_flagged"], 0);
+}

@@ -251,3 +251,32 @@ fn mistakes_are_explained_and_leave_nothing() {
     assert!(message.contains("among what is read"), "{message}");
     assert_eq!(files(&here.join("out")), ["trace.exr"]);
 }
+
+#[test]
+fn a_lamp_shut_in_is_refused_and_a_missing_sky_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let cube = "[camera]\nfov_deg = 36\n[[body]]\nname = \"cube\"\nmesh = \"cube\"\nposition = [0, 3, 0]\n";
+    let lamp = "[[light]]\nname = \"lamp\"\nkind = \"point\"\nposition = [0, 3, 0]\nstrength = 5\n";
+    std::fs::write(here.join("shut.toml"), format!("{cube}{lamp}")).unwrap();
+    let said = bad(&["compare", "shut.toml", SMALL], here);
+    assert!(said.contains("'lamp'") && said.contains("inside 'cube'"), "{said}");
+    assert_eq!(files(here), ["shut.toml"]);
+    std::fs::write(here.join("sky.toml"), format!("{cube}[sky]\ntexture = \"checker\"\n")).unwrap();
+    let said = good(&["compare", "sky.toml", SMALL, "--no-pictures", "--repeats=1"], here);
+    assert!(said.contains("note: the sky is not there but by trace and exact"), "{said}");
+}
+
+#[test]
+fn curved_scenes_are_compared_with_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    good(&["render", "blackhole", "--size=48x27", "-o", "hole.exr"], here);
+    let said = good(&["compare", "blackhole", "--reference", "hole.exr", "--repeats=1", "-o", "c"], here);
+    assert!(said.contains("Kerr") || said.contains("black hole"), "{said}");
+    let told = json(&here.join("c/compare.json"));
+    let methods = told["scenes"][0]["methods"].as_array().unwrap();
+    let trace = methods.iter().find(|m| m["method"] == "trace" || m["name"] == "trace").unwrap();
+    assert_eq!(trace["difference"]["silhouette"]["pixels"], 0, "{trace}");
+    assert!(bad(&["compare", "blackhole"], here).contains("--reference"));
+}

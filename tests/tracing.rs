@@ -15,7 +15,8 @@ use terrell::plan::Method;
 use terrell::relativity::Motion;
 use terrell::render::{Options, Report, render};
 use terrell::scene::{
-    Aim, Body, Gloss, Light, LightKind, Material, Mesh, Paint, Scene, Surface, View, parse_scene, shapes,
+    Aim, Body, Gloss, Light, LightKind, Material, Mesh, Paint, Picture, Scene, Sky, SkyTexture, Surface,
+    View, builtin_scene, parse_scene, shapes,
 };
 use terrell::spectrum::{Shape, Spectrum, luminance};
 use terrell::trace::Paths;
@@ -126,6 +127,17 @@ fn white_furnace() {
                 let whole = (1.0 - RHO.powi(bounces as i32 + 1)) / (1.0 - RHO);
                 let seen = mean_ratio(&film, |i| whole * f64::from(film.doppler[i]).powi(power));
                 agrees(seen, &format!("{coloring} at {beta}, {bounces} reflections"));
+                // Everywhere: part by part of the picture.
+                for part in 0..12 {
+                    let is_in = |i: usize| i % 96 / 24 + 4 * (i / 96 / 24) == part;
+                    let of_part = Film {
+                        body: (0..film.body.len()).map(|i| film.body[i] | -i32::from(!is_in(i))).collect(),
+                        ..film.clone()
+                    };
+                    let (mean, uncertain) =
+                        mean_ratio(&of_part, |i| whole * f64::from(film.doppler[i]).powi(power));
+                    assert!((mean - 1.0).abs() < 5.0 * uncertain + 1e-6, "part {part}: {mean} ± {uncertain}");
+                }
             }
         }
     }
@@ -426,4 +438,57 @@ fn scale_does_not_matter() {
         let off = whole.color.iter().zip(&scaled.color).map(|(a, b)| (a[1] - b[1]).abs()).fold(0.0, f32::max);
         assert!(off < 1e-5 && whole.covered() > 20, "2^{exponent}: {off}");
     }
+}
+
+/// A mirror shows the sky where nothing else is: of a sky that is even, as bright as two shifts make it.
+#[test]
+fn mirrors_show_the_sky() {
+    let silver = Gloss { metallic: 1.0, roughness: 0.0, ..Gloss::default() };
+    for (coloring, power) in [(Coloring::Geometry, 0), (Coloring::Flat, 3), (Coloring::Bolometric, 4)] {
+        for beta in [0.0, -0.6, 0.6] {
+            let turned = DAffine3::from_rotation_x(-std::f64::consts::FRAC_PI_2);
+            let wide = DAffine3::from_scale(DVec3::splat(40.0)) * turned;
+            let mirror = of(shapes::plate().placed(&wide), material([1.0; 3], [0.0; 3], silver));
+            let motion = moving(DVec3::Y * beta, Event::at(-5.0, DVec3::new(0.0, 5.0, 0.0)));
+            let view = View { size: [24, 18], fov_deg: Some(0.01), ..View::default() };
+            let mut scene = Scene::new("mirror", vec![Body::new("mirror", mirror, motion)], view);
+            let white = Picture::new("white", 1, 1, vec![[255; 3]]).unwrap();
+            scene.sky = Some(Sky::new(SkyTexture::picture(white)));
+            let (film, _) = traced(&scene, coloring, 4, 1);
+            // Light that meets what comes head-on is shifted twice by the same factor.
+            let shift = (1.0 - beta) / (1.0 + beta);
+            assert!(film.body.iter().all(|body| *body == 0), "{beta}");
+            for color in &film.color {
+                let ratio = f64::from(color[1]) / shift.powi(power);
+                // A field of 10⁻⁴ rad.
+                assert!((ratio - 1.0).abs() < 1e-4, "{coloring} at {beta}: {ratio}");
+            }
+        }
+    }
+}
+
+/// What is told of noise is what two pictures by other chances differ by, pixel by pixel.
+#[test]
+fn noise_is_what_pictures_differ_by() {
+    let mut scene = builtin_scene("box").unwrap().scene();
+    scene.view.size = [160, 90];
+    let camera = scene.camera().unwrap();
+    let by = |seed: u64, samples: u32| {
+        let paths = Paths { bounces: 4, seed };
+        let coloring = Coloring::Geometry;
+        let options = Options { method: Method::Trace, coloring, samples, paths, ..Options::default() };
+        let (film, report) = render(&scene, &camera, &options, |_| ()).unwrap();
+        let light: Vec<f64> = film.color.iter().map(|c| f64::from(luminance(*c))).collect();
+        (light, report.rays.unwrap().noise.unwrap())
+    };
+    let [(a, told), (b, _)] = [by(1, 32), by(2, 32)];
+    let off = a.iter().zip(&b).filter(|(a, b)| a != b).map(|(a, b)| ((a - b) / (a + b)).powi(2) * 2.0);
+    let (sum, count) = off.fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
+    let differ = f64::sqrt(sum / count);
+    let (_, finer) = by(1, 128);
+    println!("told {told}, {finer} of four times the samples; they differ by {differ}");
+    // What is told has the steps of outlines in it, which both pictures have alike.
+    assert!((told / differ - 1.0).abs() < 0.2, "{told} {differ}");
+    // Half as much, but for a few bright pixels.
+    assert!(finer < told / 1.4, "{told} {finer}");
 }

@@ -15,6 +15,7 @@ use terrell::plan::Method;
 use terrell::render::Options;
 use terrell::scene::{Animation, Camera, Pace, STANDARD_BETA, Scene, Speed};
 use terrell::tone::{Development, Tone};
+use terrell::trace::Traced;
 
 /// A film of a scene
 ///
@@ -336,6 +337,7 @@ impl Done<'_> {
             self.colors_in_words(),
             took,
         );
+        let noise = tally.noise.map(|noise| format!("the noisiest frame has {:.2} %", 100.0 * noise));
         let mut note = |text: String| line.push_str(&format!("note: {text}\n"));
         if self.stopped {
             note(format!("stopped: {} of {} frames are there", tally.drawn + tally.kept, self.frames()));
@@ -352,9 +354,10 @@ impl Done<'_> {
         if tally.surplus > 0 {
             note(format!("{} of a longer film taken away", frames(tally.surplus)));
         }
+        noise.into_iter().for_each(&mut note);
         if tally.flagged > 0 {
             note(format!("magenta in {}", frames(tally.flagged)));
-            summary::ray_notes(&tally.rays).into_iter().for_each(&mut note);
+            tally.rays.iter().flat_map(summary::ray_notes).for_each(&mut note);
         }
         let scenes = self.takes.iter().flat_map(|t| t.panels.last()).flat_map(|p| &p.scene.notes);
         scenes.chain(&self.notes).for_each(|n| note(n.clone()));
@@ -405,7 +408,13 @@ impl Done<'_> {
             "frames_kept": tally.kept,
             "frames_changed": tally.changed,
             "stopped": self.stopped,
+            "frames_flagged": tally.flagged,
+            "rays": tally.rays.map(|count| {
+                let (to_lights, noise) = (Vec::new(), tally.noise);
+                summary::rays(&Traced { count, to_lights, noise }, &self.takes[0].panels[0].scene)
+            }),
             "pieces": tally.pieces,
+            "notes": self.notes,
             "seconds": {
                 "mapping_and_cutting": tally.mapping.as_secs_f64(),
                 "shading": tally.shading.as_secs_f64(),

@@ -5,7 +5,7 @@ use super::report::ReportFlags;
 use clap::Args;
 use serde_json::{Value, json};
 use terrell::explanation::{Explanation, Verdict};
-use terrell::render::Options;
+use terrell::render::{Options, Raster};
 use terrell::scene::{Camera, Scene};
 
 #[derive(Args)]
@@ -29,6 +29,10 @@ pub fn tell(
     why: Option<&str>,
     report: &ReportFlags,
 ) -> Result<(), Fault> {
+    if options.raster == Raster::Wgpu {
+        // As drawing would.
+        options.device(scene, cameras).map_err(|why| format!("no graphics processor draws this: {why}"))?;
+    }
     let explanation = Explanation::new(scene, cameras, options);
     let Explanation { method, device, contents, methods, devices } = &explanation;
     let verdicts = |all: &[Verdict]| -> Vec<Value> {

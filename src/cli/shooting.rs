@@ -8,7 +8,7 @@ use terrell::picture::{self, FrameFolder, Movie, MovieFormat};
 use terrell::render::{Options, Prepared, render_again};
 use terrell::scene::{Animation, Camera, Scene};
 use terrell::tone::Development;
-use terrell::trace::Count;
+use terrell::trace::{Count, Traced};
 
 /// Columns between pictures that stand side by side, and their grey.
 const GAP: u32 = 2;
@@ -59,8 +59,10 @@ pub struct Tally {
     pub dark: usize,
     /// Pictures with rays that have no right colour.
     pub flagged: usize,
-    /// Of these, all rays.
-    pub rays: Count,
+    /// All rays, where they are followed.
+    pub rays: Option<Count>,
+    /// The greatest noise of a picture.
+    pub noise: Option<f64>,
     /// Of the take that is shot, in its last panel: rays to each light, and those of them that are blocked.
     to_lights: Vec<[u64; 2]>,
     pub mapping: Duration,
@@ -204,14 +206,11 @@ impl Shooting<'_> {
                     *all = [all[0] + of_frame[0], all[1] + of_frame[1]];
                 }
             }
-            if let Some(count) = report
-                .rays
-                .as_ref()
-                .map(|rays| rays.count)
-                .filter(|count| count.failed() + count.impossible > 0)
-            {
-                self.tally.flagged += 1;
-                self.tally.rays = self.tally.rays.with(count);
+            if let Some(Traced { count, noise, .. }) = report.rays {
+                self.tally.flagged += usize::from(count.failed() + count.impossible > 0);
+                self.tally.rays = Some(self.tally.rays.unwrap_or_default().with(count));
+                self.tally.noise =
+                    noise.map(|noise| noise.max(self.tally.noise.unwrap_or(0.0))).or(self.tally.noise);
             }
             if let Some(note) = summary::gpu_note(&report).filter(|note| !self.notes.contains(note)) {
                 self.notes.push(note);

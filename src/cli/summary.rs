@@ -135,7 +135,7 @@ pub fn rays(traced: &Traced, scene: &Scene) -> Value {
             "from_camera": primary,
             "to_lights": shadow,
             "to_lights_blocked": blocked,
-            "to_each_light": to_lights.iter().map(|[asked, blocked]| json!({ "rays": asked, "blocked": blocked })).collect::<Vec<_>>(),
+            "to_each_light": (!to_lights.is_empty()).then(|| to_lights.iter().map(|[asked, blocked]| json!({ "rays": asked, "blocked": blocked })).collect::<Vec<_>>()),
             "of_paths": path,
             "noise": noise,
         });

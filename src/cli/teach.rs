@@ -153,9 +153,9 @@ impl Teach {
             }
             (false, _) => String::new(),
         };
-        let _ = write!(
+        let _ = writeln!(
             said,
-            "{}{}: {} files{first}\n",
+            "{}{}: {} files{first}",
             if said.is_empty() { "" } else { "\n" },
             folder.display(),
             names.len()
@@ -168,10 +168,8 @@ impl Made {
     /// What stands for it in an index: the last picture of a scene, if there is one.
     fn picture(&self) -> Option<&Drawn> {
         let pictures = || self.drawn.iter().flatten();
-        let only = self.drawn.iter().filter(|files| files.len() == 1).flatten();
-        only.filter(|drawn| drawn.kind == Kind::Png)
-            .last()
-            .or(pictures().find(|drawn| drawn.kind == Kind::Svg))
+        let mut only = self.drawn.iter().filter(|files| files.len() == 1).flatten();
+        only.rfind(|drawn| drawn.kind == Kind::Png).or(pictures().find(|drawn| drawn.kind == Kind::Svg))
     }
 }
 

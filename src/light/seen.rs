@@ -242,6 +242,19 @@ impl<'a> SeenShading<'a> {
         }
     }
 
+    /// The sky in a colour, as a source that is seen with a Doppler factor; none if it is black, or is not there.
+    pub(crate) fn sky_source(&self, color: [f32; 3], doppler: f64) -> Option<Source<'_>> {
+        let sky = self.shading.sky.as_ref()?;
+        (color != [0.0; 3] && self.shading.coloring != Coloring::Doppler).then(|| Source {
+            spectrum: &sky.spectrum,
+            scale: sky.scale,
+            color: color.map(f64::from),
+            unshifted: &sky.unshifted,
+            strength: f64::from(sky.strength),
+            doppler,
+        })
+    }
+
     /// A material of a body, for those who follow light further.
     pub(crate) fn surface(&self, body: usize, material: usize) -> SurfaceLight<'a> {
         SurfaceLight {

@@ -135,7 +135,9 @@ fn figures(reference: &Reference, film: &Film, marks: &[Mark], faces: Faces, pix
     let silhouette =
         known.body.then(|| Disagreement::of(film, marked(), Mark::Silhouette, Mark::BeyondSilhouette));
     let edges = has_faces.then(|| Disagreement::of(film, marked(), Mark::Edge, Mark::BeyondEdge));
-    let same = || marked().filter(|(_, mark)| **mark == Mark::Same).map(|(i, _)| i);
+    // The sky is no face.
+    let is_sky = |i: usize| known.body && expected.body[i] < 0;
+    let same = || marked().filter(|(i, mark)| **mark == Mark::Same && !is_sky(*i)).map(|(i, _)| i);
     let worst = |known: bool, values: &[f32], expected: &[f32]| {
         known.then(|| worst(film, values, expected, same())).flatten()
     };

@@ -32,6 +32,14 @@ impl Motion {
         Lorentz::boost(&self.celerity)
     }
 
+    /// Where the body's points, given in its rest frame, are at a time of the world.
+    pub fn at_time(&self, t: f64) -> impl Fn(DVec3) -> DVec3 + use<> {
+        let (beta, gamma) = (self.celerity.beta(), self.celerity.gamma());
+        let along = self.celerity.direction().unwrap_or(DVec3::ZERO);
+        let origin = self.origin.position() + beta * (t - self.origin.t());
+        move |x_rest| origin + x_rest + along * (along.dot(x_rest) * (1.0 / gamma - 1.0))
+    }
+
     /// The observer `observer` becomes when it sees the rest-frame point `x_rest` abreast: at right angles to
     /// the relative motion in its own frame, which is where the point appears nearest.
     ///

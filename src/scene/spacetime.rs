@@ -64,6 +64,11 @@ pub enum SpacetimeError {
         "in curved spacetime the ways from lights to surfaces are not solved for, so nothing can be lit; take '{0}' away, and let surfaces shine by themselves"
     )]
     Light(String),
+    /// Surfaces that reflect.
+    #[error(
+        "in curved spacetime light is not followed from surface to surface, and '{0}' has a surface that only reflects; make it luminous"
+    )]
+    Reflects(String),
     /// The moment at which something is seen abreast.
     #[error(
         "in curved spacetime nothing is seen just once, and not abreast; give a time instead of 'nearest {0}'"
@@ -91,6 +96,11 @@ impl Scene {
         if let Some(light) = self.lights.first() {
             return Err(SpacetimeError::Light(light.name.clone()));
         }
+        let reflects =
+            |b: &&super::Body| b.mesh.materials.iter().any(|m| m.is_lit(false) && m.emission == [0.0; 3]);
+        if let Some(body) = self.bodies.iter().find(reflects) {
+            return Err(SpacetimeError::Reflects(body.name.clone()));
+        }
         if let Some(name) = &self.view.nearest {
             return Err(SpacetimeError::Nearest(name.clone()));
         }
@@ -101,20 +111,22 @@ impl Scene {
         }
     }
 
-    /// What of resting bodies lies within a horizon, where nothing rests and nothing is seen, for people to read.
+    /// Which bodies reach into a horizon at the time of the camera, for people to read.
     pub fn horizon_notes(&self) -> Vec<String> {
         let Spacetime::Kerr(hole) = self.spacetime else { return Vec::new() };
         let reaches = |body: &&super::Body| {
-            let (mesh, origin) = (&body.mesh, body.motion.origin.position());
-            !body.motion.celerity.moves()
-                && (0..mesh.vertex_count())
-                    .any(|v| hole.radius((mesh.vertex(v as u32) + origin).to_array()) <= hole.horizon())
+            let (mesh, motion) = (&body.mesh, &body.motion);
+            let now = motion.at_time(self.view.event.t());
+            (0..mesh.vertex_count())
+                .any(|v| hole.radius(now(mesh.vertex(v as u32)).to_array()) <= hole.horizon())
         };
         let note = |body: &super::Body| {
-            format!(
-                "'{}' reaches into the horizon, where nothing can rest; what is inside is not seen",
-                body.name
-            )
+            let what = if body.motion.celerity.moves() {
+                "at the time of the picture, crossing it"
+            } else {
+                "where nothing can rest"
+            };
+            format!("'{}' reaches into the horizon, {what}; what is inside is not seen", body.name)
         };
         self.bodies.iter().filter(reaches).map(note).collect()
     }

@@ -151,7 +151,7 @@ mod tests {
         let style = Style { colored: false };
         let mut text = String::new();
         style.paragraph(&mut text, "one *two three*, `four five` (*six*) seven", 12, ["> ", "  "]);
-        assert_eq!(text, "> one two\n  three,\n  four five\n  (six) seven\n");
+        assert_eq!(text, "> one two\n  three,\n  four five\n  (six)\n  seven\n");
         let mut colored = String::new();
         Style { colored: true }.paragraph(&mut colored, "a *b*.", 80, ["", ""]);
         assert_eq!(colored, "a \x1b[3mb\x1b[0m.\n");

@@ -36,7 +36,7 @@ use crate::spectrum::luminance;
 use chord::Goal;
 use emitters::Emitters;
 use lists::Lists;
-use path::World;
+use path::{SkyAround, World};
 use rayon::prelude::*;
 use stage::Stage;
 use std::sync::Arc;
@@ -66,8 +66,8 @@ pub struct Traced {
     pub count: Count,
     /// Rays from what is seen to each light, and how many of them something stood in the way of.
     pub to_lights: Vec<[u64; 2]>,
-    /// What pixels are off by, by the chance of paths and of samples, of their brightness: root mean square. None where no
-    /// path was followed, or the samples cannot be halved.
+    /// What pixels are off by, by the chance of paths and of samples, each of its own brightness: root mean square over all
+    /// in which something is left to chance. None where no path was followed, or the samples cannot be halved.
     pub noise: Option<f64>,
 }
 
@@ -81,13 +81,17 @@ const PASSES: usize = 32;
 /// From the sums of the first half of the samples and of all: the two halves are off by as much, the one independently of
 /// the other, so that their difference is what their sum is off by.
 fn noise(half: &[[f32; 3]], all: &[[f32; 3]]) -> Option<f64> {
-    let (mut off, mut whole) = (0.0, 0.0);
+    let (mut sum, mut count) = (0.0, 0);
     for (half, all) in half.iter().zip(all) {
         let [half, all] = [half, all].map(|c| f64::from(luminance(*c)));
-        off += (all - 2.0 * half).powi(2);
-        whole += all * all;
+        let off = (all - 2.0 * half) / all;
+        // By rounding, where nothing is left to chance; and black is not off by a part of itself.
+        if off.abs() > 1e-5 && off.is_finite() {
+            sum += off * off;
+            count += 1;
+        }
     }
-    (!half.is_empty() && whole > 0.0).then(|| (off / whole).sqrt())
+    (!half.is_empty()).then(|| (sum / f64::from(count.max(1))).sqrt())
 }
 
 /// A scene to be traced: its meshes with their hierarchies of boxes, which are the same for all moments and observers.
@@ -189,7 +193,14 @@ impl Tracer {
         let follows = paths.bounces > 0;
         let stage = self.stage(scene, camera, shading.lights() > 0 || follows);
         let emitters = follows.then(|| Emitters::new(&stage.targets, shading));
-        let world = emitters.as_ref().map(|emitters| World { stage: &stage, shading, emitters, paths });
+        let around = scene.sky.as_ref().filter(|_| follows).map(|sky| {
+            let bodies = stage.targets.iter().map(|target| &scene.bodies[target.body]);
+            let world_from_rest =
+                bodies.map(|body| body.motion.world_from_rest::<Wide>().rounded()).collect();
+            SkyAround { sky, world_from_rest }
+        });
+        let sky = around.as_ref();
+        let world = emitters.as_ref().map(|emitters| World { stage: &stage, shading, emitters, paths, sky });
         let lens = &camera.lens;
         let world_from_observer = || camera.observer.observer_from_world::<Wide>().inverse().rounded();
         let sky = scene.sky.as_ref().map(|sky| (sky, world_from_observer()));

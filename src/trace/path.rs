@@ -5,9 +5,9 @@ use super::random::Random;
 use super::stage::{Stage, Way};
 use crate::light::gloss::{self, Chosen};
 use crate::light::{Point, SeenShading, SurfaceLight, Trail};
-use crate::scene::{Colors, Gloss};
+use crate::scene::{Colors, Gloss, Sky};
 use glam::DVec3;
-use terrell_geodesic::{FourVector, Rest};
+use terrell_geodesic::{FourVector, Lorentz, Rest};
 
 /// How paths are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -41,7 +41,19 @@ pub(super) struct World<'a> {
     pub shading: &'a SeenShading<'a>,
     pub emitters: &'a Emitters,
     pub paths: Paths,
+    pub sky: Option<&'a SkyAround<'a>>,
 }
+
+/// The sky, as paths end at it.
+pub(super) struct SkyAround<'a> {
+    pub sky: &'a Sky,
+    /// From the rest frame of every target.
+    pub world_from_rest: Vec<Lorentz<terrell_geodesic::World, Rest>>,
+}
+
+/// How far beside each other what is seen of the sky is averaged from surfaces that are no mirrors, radians: single stars
+/// would be found by chance only.
+const BLUR: f64 = 0.1;
 
 /// Used again from path to path.
 #[derive(Default)]
@@ -88,6 +100,7 @@ impl<'a> World<'a> {
                         add(trail.seen(&light.source(here.doppler)), 1.0);
                     }
                 }
+                self.add_sky(&here, &chosen, matt, &trail, &mut add);
                 break;
             };
             self.add_own(&here, &next, &chosen, &trail, &scratch.shares, &mut add);
@@ -123,6 +136,26 @@ impl<'a> World<'a> {
             power_share(density, other)
         });
         add(trail.seen(&source), share);
+    }
+
+    /// The sky's, where a ray leaves.
+    fn add_sky(
+        &self,
+        from: &Vertex<'a>,
+        chosen: &Chosen,
+        matt: bool,
+        trail: &Trail,
+        add: &mut impl FnMut([f64; 3], f64),
+    ) {
+        let Some(around) = self.sky else { return };
+        let back = around.world_from_rest[from.target] * FourVector::seen_from(chosen.to_light);
+        let direction = back.xyz().normalize_or(DVec3::Z);
+        let blur = if matt { BLUR } else { 0.0 };
+        let (right, down) = direction.any_orthonormal_pair();
+        let color = around.sky.color(direction, [right * blur, down * blur]);
+        if let Some(source) = self.shading.sky_source(color, from.doppler / -back.t) {
+            add(trail.seen(&source), 1.0);
+        }
     }
 
     /// Light of a point that shines, chosen by chance among all.

@@ -15,7 +15,7 @@ pub struct LocalFrame {
 pub enum FrameError {
     /// The event is within a horizon, which these coordinates do not describe.
     #[error(
-        "the observer is at or inside a horizon; only what is outside can be described, so move it outwards"
+        "the observer is inside a horizon, or so near that it cannot be told; only what is outside can be described, so move it outwards"
     )]
     InsideHorizon,
     /// The metric is not known there, or is none.

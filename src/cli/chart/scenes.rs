@@ -120,7 +120,7 @@ pub fn chart(cases: &[Case], ways: &Ways, develop: &DevelopFlags, quiet: bool) -
     let timed = all.iter().filter(|way| way.vertices != Vertices::CutF32).count();
     let bar = progress_bar(cases.len() * timed * (ways.repeats as usize + 1), "pictures", quiet);
     let (mut table, mut rows) = (Table::new(COLUMNS), Vec::new());
-    let (mut said, mut notes) = (String::new(), Vec::new());
+    let (mut said, mut notes, mut any) = (String::new(), Vec::new(), false);
     for (number, case) in cases.iter().enumerate() {
         let Case { scene, camera } = case;
         let sweep = Sweep {
@@ -147,6 +147,7 @@ pub fn chart(cases: &[Case], ways: &Ways, develop: &DevelopFlags, quiet: bool) -
         if has_reflections(scene) {
             notes.push(format!("{}: light of surfaces on each other is left out", scene.name));
         }
+        any |= points.iter().any(|point| point.measured.is_ok());
         let failed = points.iter().filter_map(|p| Some((p.way.series, p.measured.as_ref().err()?)));
         for (series, why) in failed {
             let note = format!("{}: {series} is missing: {why}", case.title());
@@ -156,6 +157,9 @@ pub fn chart(cases: &[Case], ways: &Ways, develop: &DevelopFlags, quiet: bool) -
         }
     }
     bar.finish_and_clear();
+    if !any {
+        return Err(notes.join("; ").into());
+    }
     let about = json!({
         "color": ways.options.coloring.to_string(),
         "reference": "ray tracing",
@@ -252,7 +256,7 @@ fn row(case: &Case, point: &SweepPoint, is_best: [bool; 3]) -> [Value; COLUMNS.l
         json!(is_cut.then_some(tolerance)),
         json!(samples),
         json!(summary::doppler_at(*doppler_at)),
-        json!(if point.way.vertices == Vertices::CutF32 { "f32" } else { "f64" }),
+        json!(if point.way.vertices == Vertices::CutF32 || *raster == Raster::Wgpu { "f32" } else { "f64" }),
         json!(case.scene.triangle_count()),
         count(&|m| m.pieces),
         number(&|m| Some(1e3 * m.preparation.as_secs_f64())),

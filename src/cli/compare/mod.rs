@@ -11,7 +11,7 @@ use super::report::ReportFlags;
 use super::summary;
 use clap::Args;
 use folders::{Folders, check_folder, folder_names};
-use methods::{WAYS, Way};
+use methods::{Drawn, WAYS, Way};
 use pictures::{Pictures, pair};
 use progress::Progress;
 use serde_json::json;
@@ -23,7 +23,7 @@ use terrell::film::Film;
 use terrell::measure::{Comparison, Corners, Faces, Known, Perceived, Reference, flip};
 use terrell::picture::{self, Pending};
 use terrell::plan::{Method, has_reflections, is_of_polygons};
-use terrell::render::Options;
+use terrell::render::{Options, Report};
 use terrell::scene::{Camera, Scene, builtin_scenes};
 use terrell::tone::Development;
 
@@ -138,10 +138,11 @@ impl Compare {
         let options = self.look.options()?;
         let reference = self.reference.as_deref().map(picture::read_reference).transpose()?;
         let mut scenes = self.open(reference.as_ref())?;
-        if let Some(scene) = scenes.iter().find(|scene| scene.spacetime.is_curved()) {
+        if let Some(scene) = scenes.iter().find(|s| s.spacetime.is_curved() && reference.is_none()) {
             let why =
                 "in curved spacetime rays are the only method, and there is nothing to compare them with";
-            return Err(format!("'{}': {why}; draw it with `terrell render`", scene.name).into());
+            let remedy = "give another program's picture (--reference), or draw it with `terrell render`";
+            return Err(format!("'{}': {why}; {remedy}", scene.name).into());
         }
         let cameras = scenes.iter().map(Scene::camera).collect::<Result<Vec<_>, _>>()?;
         if let (Some(reference), [camera], Some(path)) = (&reference, &cameras[..], &self.reference) {
@@ -233,6 +234,12 @@ impl Compare {
             summary::shadow_note(scene, coloring)
                 .map(|note| format!("{note} but by {only}: that is in the others' light")),
         );
+        let has_sky = scene.sky.is_some() && !scene.spacetime.is_curved();
+        scene.notes.extend(
+            has_sky.then(|| {
+                "the sky is not there but by trace and exact: that is in the others' light".to_owned()
+            }),
+        );
         // What the others are compared with, if nothing is given.
         scene.notes.extend(summary::digit_note(scene, Method::Trace));
         let mut ways: Vec<&'static Way> = WAYS
@@ -249,6 +256,12 @@ impl Compare {
             let done = way.draw(scene, camera, options, self.repeats, |run| {
                 progress.show(&format!("{}: {}, run {} of {}", scene.name, way.about, run + 1, self.repeats));
             });
+            if let Ok(Drawn { report: Report { rays: Some(rays), .. }, .. }) = &done {
+                let dark = summary::dark_lights(&rays.to_lights, scene, &camera.observer);
+                if let Some(light) = dark.into_iter().find(|light| light.shut_in) {
+                    return Err(format!("'{}': {}; move it or take it away", scene.name, light.told).into());
+                }
+            }
             drawn.push((way, done));
         }
         progress.show(&format!("{}: comparing", scene.name));
@@ -278,8 +291,8 @@ impl Compare {
         let mut compared = Compared {
             name: scene.name.clone(),
             what: format!(
-                "{}: {}x{} {lens}, flat spacetime, {bodies}, {triangles} triangles, {colors}",
-                scene.name, size[0], size[1]
+                "{}: {}x{} {lens}, {}, {bodies}, {triangles} triangles, {colors}",
+                scene.name, size[0], size[1], scene.spacetime
             ),
             size,
             triangles,

@@ -7,6 +7,7 @@ use crate::apparent::{ApparentMesh, Field, Subdivision};
 use crate::color::Coloring;
 use crate::film::Samples;
 use crate::light::Shading;
+use crate::plan::Method;
 use crate::raster::{Drawable, shade};
 use crate::relativity::{ApparentMap, Motion};
 use crate::render::Options;
@@ -19,11 +20,10 @@ const SIZES: [f64; 13] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 
 const DISTANCES: [f64; 10] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 const SPEEDS: [f64; 2] = [0.9, 0.999];
 
-/// A triangle that faces a camera it passes, in its rest frame, seen abreast; its error uncut and cut.
-fn errors(size: f64, distance: f64, beta: f64) -> [f64; 2] {
-    let failed = [f64::INFINITY; 2];
+/// A triangle that faces a camera it passes, in its rest frame, seen abreast; and its corners.
+fn scene(size: f64, distance: f64, beta: f64) -> Option<(Scene, [DVec3; 3])> {
     let axis = DVec3::new(0.6, 0.0, 0.8);
-    let Ok(celerity) = Celerity::from_beta(beta * axis) else { return failed };
+    let celerity = Celerity::from_beta(beta * axis).ok()?;
     let forward = DVec3::Y;
     let motion = Motion { celerity, origin: Event::at(-distance, distance * forward) };
     // 360 of 720 pixels over 60°.
@@ -40,7 +40,14 @@ fn errors(size: f64, distance: f64, beta: f64) -> [f64; 2] {
     };
     let corners = [corner(10.0), corner(130.0), corner(250.0)];
     let body = Body::new("triangle", Mesh::new(&corners, vec![[0, 1, 2]]), motion);
-    let scene = Scene::new("triangle", vec![body], view);
+    Some((Scene::new("triangle", vec![body], view), corners))
+}
+
+/// The error of such a triangle's outline, uncut and cut.
+fn errors(size: f64, distance: f64, beta: f64) -> [f64; 2] {
+    let failed = [f64::INFINITY; 2];
+    let Some((scene, corners)) = scene(size, distance, beta) else { return failed };
+    let motion = scene.bodies[0].motion;
     let (Ok(camera), Ok(shading)) = (scene.camera(), Shading::within(&scene, 0.0, Coloring::Geometry)) else {
         return failed;
     };
@@ -60,18 +67,22 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     let (sizes, distances) = (resolution.some(&SIZES, 4), resolution.some(&DISTANCES, 3));
     let mut maps = Vec::new();
     for beta in SPEEDS {
+        let planned = cells(&sizes, &distances, |size, distance| match scene(*size, *distance, beta) {
+            Some((scene, _)) => Planner::of(&scene, Method::Apparent),
+            None => Planner::Avoids,
+        });
         let cells = cells(&sizes, &distances, |size, distance| errors(*size, *distance, beta));
-        for (way, (name, title, planner, words)) in [
+        for (way, (name, title, is_cut, words)) in [
             (
                 "uncut",
                 "uncut",
-                Planner::Avoids,
+                false,
                 "Fails where a triangle looks large, whatever its size and distance by themselves. No method draws so what moves.",
             ),
             (
                 "cut",
                 "cut to ¼ px",
-                Planner::Enters,
+                true,
                 "Edges stay within the tolerance asked for, near and far; taken for γ above 10⁵, or where cutting is asked for.",
             ),
         ]
@@ -88,7 +99,7 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
                 tolerance: 0.25,
                 errors: cells.iter().map(|errors| errors[way]).collect(),
                 conditioning: None,
-                planner: vec![planner; cells.len()],
+                planner: if is_cut { planned.clone() } else { vec![Planner::Avoids; cells.len()] },
                 words: words.to_owned(),
             });
         }

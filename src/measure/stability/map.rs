@@ -1,4 +1,7 @@
+use crate::color::Coloring;
 use crate::drawing::number::{significant, superscript};
+use crate::plan::{Method, cheapest};
+use crate::scene::Scene;
 use rayon::prelude::*;
 
 /// One side of a [`Map`].
@@ -72,6 +75,13 @@ pub enum Planner {
     Warns,
     /// It is taken.
     Enters,
+}
+
+impl Planner {
+    /// What is done with a scene, where a method is in question that needs nothing else.
+    pub(super) fn of(scene: &Scene, method: Method) -> Self {
+        if cheapest(scene, Coloring::Spectral).0 == method { Self::Enters } else { Self::Avoids }
+    }
 }
 
 /// The error of one way to compute something, over two things it depends on.

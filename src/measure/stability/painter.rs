@@ -60,6 +60,14 @@ fn shares(depth: f64, beta: f64) -> Option<[f64; 2]> {
     Some([share(Raster::Skia)?, share(Raster::Cpu)?])
 }
 
+/// What is done with each of the scenes, by the raster that is usual for polygons or by another.
+fn planned(depths: &[f64], betas: &[f64], usual: bool) -> Vec<Planner> {
+    cells(depths, betas, |depth, beta| match scene(*depth, *beta) {
+        Some(scene) if usual => Planner::of(&scene, Method::Apparent),
+        _ => Planner::Avoids,
+    })
+}
+
 pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     let (depths, betas) = (resolution.some(&DEPTHS, 4), resolution.some(&BETAS, 3));
     let shares = |depth: &f64, beta: &f64| shares(*depth, *beta).unwrap_or([f64::INFINITY; 2]);
@@ -92,7 +100,7 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
         tolerance: 1e-3,
         errors: cells.iter().map(|shares| shares[way]).collect(),
         conditioning: None,
-        planner: vec![if raster == usual { Planner::Enters } else { Planner::Avoids }; cells.len()],
+        planner: planned(&depths, &betas, raster == usual),
         words: words.to_owned(),
     })
     .collect()

@@ -72,8 +72,7 @@ impl Gpu {
             power_preference: wgpu::PowerPreference::HighPerformance,
             ..Default::default()
         };
-        let adapter =
-            wait(instance.request_adapter(&options)).map_err(|e| GpuError::NoAdapter(one_line(&e)))?;
+        let adapter = wait(instance.request_adapter(&options)).map_err(|_| GpuError::NoAdapter)?;
         let info = adapter.get_info();
         let name = info.name.clone();
         let unfit = |why: String| GpuError::Unfit { adapter: name.clone(), why };

@@ -2,8 +2,10 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
     /// None was found.
-    #[error("there is no graphics processor to draw with (no driver for Vulkan, Metal or DirectX 12): {0}")]
-    NoAdapter(String),
+    #[error(
+        "there is no graphics processor to draw with: no driver for Vulkan, Metal or DirectX 12 offers one"
+    )]
+    NoAdapter,
     /// It cannot do what is needed.
     #[error("{adapter} cannot be used: {why}")]
     Unfit {

@@ -228,20 +228,23 @@ pub(super) fn read_material(
             })
         }
     };
+    let gloss = table.gloss.as_ref().map(|g| read_gloss(source, g)).transpose()?;
     const SURFACES: [(&str, Surface); 2] = [("luminous", Surface::Luminous), ("lit", Surface::Lit)];
     Ok(Finish {
         color: color("color", &table.color)?,
         emission: color("emission", &table.emission)?,
         spectrum,
         beyond,
-        // What says how it shines does shine.
+        // What says how it shines does shine; metal that does not reflects, without lights, too.
         surface: match &table.surface {
             Some(surface) => Some(word(source, "surface", surface, &SURFACES)?),
-            None => (strength.is_some() || table.spectrum.is_some() || table.law.is_some())
-                .then_some(Surface::Luminous),
+            None if strength.is_some() || table.spectrum.is_some() || table.law.is_some() => {
+                Some(Surface::Luminous)
+            }
+            None => gloss.filter(|gloss| gloss.metallic > 0.0).map(|_| Surface::Lit),
         },
         law: table.law.as_ref().map(|l| read_law(source, l)).transpose()?,
-        gloss: table.gloss.as_ref().map(|g| read_gloss(source, g)).transpose()?,
+        gloss,
     })
 }
 

@@ -138,6 +138,12 @@ pub(super) fn read_stance(source: &Source<'_>, table: &CameraTable) -> Result<St
             }
             let table = infinity.get_ref();
             let inclination_deg = source.finite("inclination_deg", &table.inclination_deg)?;
+            if !(0.0..=180.0).contains(&inclination_deg) {
+                let message = format!(
+                    "inclination_deg = {inclination_deg} must lie between 0 and 180, from the hole's axis"
+                );
+                return Err(source.at(&table.inclination_deg, message));
+            }
             let azimuth_deg =
                 table.azimuth_deg.as_ref().map_or(Ok(0.0), |a| source.finite("azimuth_deg", a))?;
             let height = source.finite("height", &table.height)?;
@@ -162,6 +168,7 @@ pub(super) fn check(
             Fault::Stance => camera.and_then(|c| {
                 c.observer.as_ref().map(|o| o.span()).or(c.at_infinity.as_ref().map(|i| i.span()))
             }),
+            Fault::Reflects(_) => None,
             // Flags may stop it.
             Fault::Animated(_) => return Ok(()),
         };
