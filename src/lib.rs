@@ -50,7 +50,7 @@
 //! [`geodesic`] (events, Lorentz maps, observers) → [`relativity`] (the map) → [`scene`] (what is there) →
 //! [`apparent`] (what it looks like), [`spectrum`] and [`light`] (what it shines with) → [`plan`] (how it is drawn; [`explanation`] says why) → [`raster`], or [`trace`] → [`film`] →
 //! [`exposure`], [`tone`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in turn. [`measure`] says how far two
-//! films are apart, [`figure`] draws what was measured. [`mod@transform`] instead makes a [`export::Model`] for other programs of what there is and how it looks.
+//! films are apart, [`figure`] draws what was measured, [`teach`] tells what is to be learnt of it all. [`mod@transform`] instead makes a [`export::Model`] for other programs of what there is and how it looks.
 
 pub mod apparent;
 pub mod color;

@@ -76,8 +76,8 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         Ok(Plate::shot(name, caption, shot))
     };
     l.plates([
-        at("before", "Nothing yet: the cube is seen far away, its shadow nowhere.", -0.6)?,
-        at("begins", "The shadow appears out of nothing.", 0.5)?,
+        at("before", "No shadow yet, though the cube is in the light.", -2.6)?,
+        at("begins", "It appears out of nothing, and grows both ways.", -0.9)?,
         at("two", "Two shadows of one cube.", 2.0)?,
     ]);
     l.attempt("terrell render shadow", "the scene, with rays");

@@ -1,0 +1,340 @@
+//! Lessons: every number they tell is that of a closed form, of the paper, or of tables others have made.
+
+#[path = "common/program.rs"]
+mod program;
+
+use program::{bad, good, pixels};
+use std::collections::HashSet;
+use terrell::teach::{What, lesson, lessons, page, told};
+
+/// √((1 + β)/(1 − β)).
+fn ahead(beta: f64) -> f64 {
+    ((1.0 + beta) / (1.0 - beta)).sqrt()
+}
+
+fn gamma(beta: f64) -> f64 {
+    1.0 / ((1.0 - beta) * (1.0 + beta)).sqrt()
+}
+
+/// All of a lesson's numbers are these, to a relative tolerance each; none is left out.
+fn tells(name: &str, expected: &[(String, f64, f64)]) {
+    let lecture = lesson(name).unwrap().lecture().unwrap();
+    let told: HashSet<&str> = lecture.numbers.iter().map(|n| n.name.as_str()).collect();
+    assert_eq!(told.len(), lecture.numbers.len(), "{name} has two numbers of one name");
+    for (number, value, tolerance) in expected {
+        let found = lecture.number(number).unwrap_or_else(|| panic!("{name} tells no '{number}'"));
+        let off = (found - value).abs() / value.abs().max(1.0);
+        assert!(off <= *tolerance, "{name}: '{number}' is {found}, not {value}");
+    }
+    let known: HashSet<&str> = expected.iter().map(|(number, ..)| number.as_str()).collect();
+    let unknown: Vec<_> = told.difference(&known).collect();
+    assert!(unknown.is_empty(), "{name}: untested {unknown:?}");
+}
+
+/// Of closed forms, to rounding.
+const ROUNDING: f64 = 1e-12;
+
+fn exact(name: impl Into<String>, value: f64) -> (String, f64, f64) {
+    (name.into(), value, ROUNDING)
+}
+
+#[test]
+fn seeing() {
+    let (b, g) = (0.9, gamma(0.9));
+    tells(
+        "seeing",
+        &[
+            exact("length measured", 1.0 / g),
+            exact("rod coming, measured", 1.0 / g),
+            exact("rod going, measured", 1.0 / g),
+            exact("rod coming, delay alone", 10.0),
+            exact("rod going, delay alone", 1.0 / 1.9),
+            exact("rod coming, seen", ahead(b)),
+            exact("rod going, seen", 1.0 / ahead(b)),
+            exact("middle is ahead of where it is seen by", 2.7),
+            // A thousand lengths away perspective is a thousandth.
+            ("near side of a small cube".into(), 1.0 / g, 1e-3),
+            ("back of a small cube".into(), b, 1e-3),
+            exact("answer: measured at 0.6c", 0.8),
+            exact("answer: seen at 0.6c", 2.0),
+        ],
+    );
+}
+
+#[test]
+fn rods() {
+    let mut expected = vec![exact("answer: coming", -35.0 / 3.0), exact("answer: going", -5.0 / 3.0)];
+    for beta in [0.5, 0.9, 0.99f64] {
+        expected.push(exact(format!("stretch of what comes at {beta}"), ahead(beta)));
+        expected.push(exact(format!("squeeze of what goes at {beta}"), 1.0 / ahead(beta)));
+        expected.push(exact(format!("lean of a far rod at {beta}, degrees"), beta.asin().to_degrees()));
+    }
+    // A quarter of the tolerance takes twice the pieces, but for whole numbers.
+    let lecture = lesson("rods").unwrap().lecture().unwrap();
+    let mut last = None;
+    for tolerance in ["1", "0.25", "0.0625"] {
+        let name = format!("pieces at {tolerance} px");
+        let pieces = lecture.number(&name).unwrap();
+        if let Some(last) = last {
+            assert!((pieces - 2.0 * last as f64).abs() <= 4.0, "{tolerance}: {pieces} after {last}");
+        }
+        last = Some(pieces as u32);
+        expected.push(exact(name, pieces));
+    }
+    tells("rods", &expected);
+}
+
+#[test]
+fn the_lattice() {
+    let mut expected = vec![
+        exact("first ball that is seen behind, 0.99c", 0.99 * gamma(0.99)),
+        exact("answer: ball that is abreast at 0.6c", 0.0),
+    ];
+    for beta in [0.5, 0.9, 0.99] {
+        for x in [-4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0f64] {
+            // Eq. 1.
+            let seen = gamma(beta) * (x - beta * x.hypot(1.0));
+            expected.push(exact(format!("ball at {x}, {beta}c"), seen));
+        }
+    }
+    tells("lattice", &expected);
+}
+
+#[test]
+fn the_cube() {
+    let mut expected = Vec::new();
+    for (beta, turn) in [(0.5, 30.0), (0.9, 64.16), (0.99, 81.89f64)] {
+        expected.push((format!("near side at {beta}"), 1.0 / gamma(beta), 1e-3));
+        expected.push((format!("back at {beta}"), beta, 1e-3));
+        // Two digits are given, and perspective is a thousandth of a radian.
+        expected.push((format!("turn at {beta}, degrees"), turn, 1e-3));
+    }
+    expected.push(("answer: near side at 0.8c".into(), 0.6, 1e-3));
+    expected.push(("answer: back at 0.8c".into(), 0.8, 1e-3));
+    let lecture = lesson("cube").unwrap().lecture().unwrap();
+    for beta in [0.5, 0.9, 0.99] {
+        let misfit = |distance: f64| lecture.number(&format!("misfit at {distance} and {beta}")).unwrap();
+        // As one over the distance, where that is large.
+        assert!((misfit(30.0) / misfit(100.0) / (100.0 / 30.0) - 1.0).abs() < 0.05, "{beta}");
+        for distance in [100.0, 30.0, 10.0, 3.0, 1.5] {
+            // Of two shapes within an edge length of a middle that far away.
+            assert!(misfit(distance) < 2.0 / distance, "{beta} {distance}");
+            expected.push(exact(format!("misfit at {distance} and {beta}"), misfit(distance)));
+        }
+    }
+    tells("cube", &expected);
+}
+
+#[test]
+fn the_gate() {
+    let mut expected = vec![
+        exact("ahead if nearer behind than, per metre aside", 0.99 * gamma(0.99)),
+        exact("answer: beside at 0.6c, degrees", 0.6f64.acos().to_degrees()),
+    ];
+    for (name, x) in [
+        ("10 m ahead, 3 m aside", 10.0),
+        ("just beside, 3 m away", 0.0),
+        ("10 m behind, 3 m aside", -10.0),
+        ("20 m behind, 3 m aside", -20.0),
+        ("30 m behind, 3 m aside", -30.0f64),
+    ] {
+        let cosine = x / x.hypot(3.0);
+        let seen = (cosine + 0.99) / (1.0 + 0.99 * cosine);
+        expected.push((format!("{name}, at rest, degrees"), cosine.acos().to_degrees(), 1e-12));
+        // The cosine loses digits beside the axis.
+        expected.push((format!("{name}, at 0.99c, degrees"), seen.acos().to_degrees(), 1e-10));
+    }
+    tells("gate", &expected);
+}
+
+#[test]
+fn doppler() {
+    let mut expected = vec![
+        exact("answer: D ahead at 0.8c", 3.0),
+        exact("answer: D behind at 0.8c", 1.0 / 3.0),
+        exact("sun coming at 0.5c, kelvin", 5772.0 * 3f64.sqrt()),
+        exact("sun going at 0.5c, kelvin", 5772.0 / 3f64.sqrt()),
+    ];
+    for beta in [0.6, 0.9, 0.95, 0.99] {
+        expected.push(exact(format!("D ahead at {beta}"), ahead(beta)));
+        expected.push(exact(format!("D behind at {beta}"), 1.0 / ahead(beta)));
+        expected.push(exact(format!("D at θ′ = 90° at {beta}"), gamma(beta)));
+        expected.push(exact(format!("D at θ = 90° at {beta}"), 1.0 / gamma(beta)));
+    }
+    // The fly-through table of J. Walker's C-ship, as it is printed.
+    for (beta, angle, d) in [("0.2805", 34.5, 1.25), ("0.6986", 19.8, 2.09), ("0.9652", 6.31, 6.44)] {
+        expected.push((format!("45° is seen at, β = {beta}, degrees"), angle, 2e-3));
+        expected.push((format!("D there, β = {beta}"), d, 3e-3));
+    }
+    for (short, beta) in [("0.2805", 0.28047668), ("0.6986", 0.69861917), ("0.9652", 0.96523621)] {
+        let angle = ((1.0 - 1.0 / gamma(beta)) / beta).acos();
+        expected.push(exact(format!("D = 1 at, β = {short}, degrees"), angle.to_degrees()));
+    }
+    for (line, nanometres) in
+        [("sodium, 589.0 nm", 589.0), ("hydrogen Hα, 656.3 nm", 656.3), ("hydrogen Hβ, 486.1 nm", 486.1)]
+    {
+        let lecture = lesson("doppler").unwrap().lecture().unwrap();
+        let speed = |what: &str| lecture.number(&format!("{line} {what} at β")).unwrap();
+        let (blue, red) = (speed("ultraviolet when coming"), speed("infrared when going"));
+        // At that speed it is at the end of what eyes see.
+        assert!(
+            (nanometres / ahead(blue) - 380.0).abs() < 1e-9 && (nanometres * ahead(red) - 750.0).abs() < 1e-9
+        );
+        expected.push(exact(format!("{line} ultraviolet when coming at β"), blue));
+        expected.push(exact(format!("{line} infrared when going at β"), red));
+    }
+    tells("doppler", &expected);
+}
+
+#[test]
+fn the_searchlight() {
+    let mut expected = vec![
+        // The paper's own figure.
+        exact("coming over going at 0.6c, third power", 64.0),
+        exact("octaves between coming and going at 0.9c, D⁴", 8.0 * ahead(0.9).log2()),
+        exact("answer: coming over going at 0.8c, bolometric", 6561.0),
+    ];
+    for beta in [0.3, 0.6, 0.9, 0.99] {
+        for n in [3, 4, 5] {
+            expected.push(exact(format!("coming over going at {beta}, D^{n}"), ahead(beta).powi(2 * n)));
+        }
+    }
+    for beta in [0.5, 0.9, 0.99, 0.999f64] {
+        expected.push(exact(format!("half the photons within at {beta}, degrees"), beta.acos().to_degrees()));
+        expected.push(exact(format!("energy in it at {beta}, percent"), 25.0 * (2.0 + beta)));
+    }
+    tells("searchlight", &expected);
+}
+
+#[test]
+fn shadows() {
+    let (lamp, height, beta) = (4.0, 1.1, 0.8);
+    let at = |sine: f64| lamp / ((lamp - height) / beta + height * sine);
+    // The least of when it is seen, looked for by steps.
+    let seen = |x: f64| {
+        let way = x.hypot(lamp - height);
+        x / beta + way * height / (lamp - height) + 14.0 - x * lamp / (lamp - height)
+    };
+    let first =
+        (0..400_000).map(|i| f64::from(i) * 1e-5).min_by(|a, b| seen(*a).total_cmp(&seen(*b))).unwrap();
+    let lever = lamp / (lamp - height);
+    let lecture = lesson("shadows").unwrap().lecture().unwrap();
+    for image in ["image that goes away, one later", "image that comes, one later"] {
+        let place = lecture.number(image).unwrap();
+        assert!((seen(place / lever) - seen(first) - 1.0).abs() < 1e-8, "{image}: {place}");
+    }
+    let image = |name: &str| exact(name, lecture.number(name).unwrap());
+    tells(
+        "shadows",
+        &[
+            exact("speed of the shadow beneath the lamp", at(0.0)),
+            exact("speed of the shadow far before", at(-1.0)),
+            exact("speed of the shadow far beyond", at(1.0)),
+            ("where the shadow is first seen".into(), first * lever, 1e-4),
+            ("when the shadow is first seen".into(), seen(first), 1e-9),
+            image("image that goes away, one later"),
+            image("image that comes, one later"),
+            exact("answer: speed beneath a lamp at 2", 1.2),
+        ],
+    );
+}
+
+#[test]
+fn lessons_are_whole() {
+    for lesson in lessons() {
+        let lecture = lesson.lecture().unwrap();
+        assert!((2..=3).contains(&lecture.tries.len()), "{}", lesson.name);
+        assert!(!lecture.question.text.is_empty() && !lecture.question.answer.is_empty());
+        let names: Vec<_> = lecture.all_plates().map(|plate| &plate.name).collect();
+        assert_eq!(names.len(), names.iter().collect::<HashSet<_>>().len(), "{}", lesson.name);
+        let text = told(lesson, &lecture, 84, false, None);
+        // Commands and tables are not broken.
+        let prose = |line: &&str| !line.starts_with("  ");
+        assert!(text.lines().filter(prose).all(|line| line.chars().count() <= 84), "{text}");
+        assert!(!text.contains('\x1b') && !text.contains("NaN") && !text.contains(" inf "), "{text}");
+    }
+}
+
+/// What is to be tried is what the command takes: it is asked how it would draw, where it can be asked.
+#[test]
+fn commands_to_try_are_commands() {
+    let folder = tempfile::tempdir().unwrap();
+    for lesson in lessons() {
+        for attempt in lesson.lecture().unwrap().tries {
+            let words: Vec<&str> = attempt.command.split_whitespace().collect();
+            assert_eq!(words[0], "terrell", "{}", attempt.command);
+            if words.contains(&"your.glb") {
+                continue;
+            }
+            let mut asked = words[1..].to_vec();
+            match asked[0] {
+                "render" | "animate" => asked.push("--explain"),
+                "compare" => asked.extend(["--size=32x18", "--repeats=1"]),
+                _ => {}
+            }
+            good(&asked, folder.path());
+        }
+    }
+}
+
+#[test]
+fn pages_need_nothing_else() {
+    let seeing = lesson("rods").unwrap();
+    let lecture = seeing.lecture().unwrap();
+    // Films take their time; this lesson has none.
+    let drawn: Vec<_> = lecture.all_plates().map(|plate| plate.draw().unwrap()).collect();
+    let html = page(seeing, &lecture, &drawn, true);
+    let sources: Vec<&str> = html.split("src=\"").skip(1).map(|rest| &rest[..20.min(rest.len())]).collect();
+    assert_eq!(sources.len(), lecture.all_plates().count());
+    assert!(sources.iter().all(|source| source.starts_with("data:image/")), "{sources:?}");
+    assert!(!html.contains("href=\"http") && !html.contains("<script"));
+    for open in ["main", "p", "table", "figure", "figcaption", "dl", "details", "nav", "code", "em"] {
+        let count = |tag: &str| html.matches(tag).count();
+        let begun = count(&format!("<{open}>")) + count(&format!("<{open} "));
+        assert_eq!(begun, count(&format!("</{open}>")), "{open}");
+    }
+    assert!(html.contains("lattice.html") && html.contains("seeing.html") && html.contains("index.html"));
+    let films = lessons().iter().flat_map(|lesson| lesson.lecture().unwrap().parts).count();
+    assert!(films > 8 * 6);
+    let reels = |lesson: &terrell::teach::Lesson| {
+        let lecture = lesson.lecture().unwrap();
+        lecture.all_plates().filter(|plate| matches!(plate.what, What::Reel(_))).count()
+    };
+    assert!(lessons().iter().map(reels).sum::<usize>() >= 4);
+}
+
+#[test]
+fn the_command_lists_tells_answers_and_draws() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let list = good(&["teach"], here);
+    assert!(lessons().iter().all(|lesson| list.contains(lesson.title)), "{list}");
+    let text = good(&["teach", "doppler"], here);
+    assert!(
+        text.contains("6.2450") && text.contains("0.1601") && text.contains("terrell teach doppler --answer")
+    );
+    assert!(good(&["teach", "doppler", "--answer"], here).contains("3.0000 and 0.3333"));
+    assert_eq!(std::fs::read_dir(here).unwrap().count(), 0);
+    let said = good(&["teach", "rods", "--html", "-o", "made", "--json", "told.json"], here);
+    assert!(said.contains("open made/rods.html"), "{said}");
+    for file in ["rods.html", "rods-hyperbolas.svg", "rods-hyperbolas.png", "rods-mast.png"] {
+        assert!(here.join("made").join(file).is_file(), "{file}");
+    }
+    let mast = pixels(here.join("made/rods-mast.png"));
+    assert!(mast.dimensions() == (640, 400) && mast.pixels().filter(|p| p.0 != [0; 3]).count() > 5000);
+    let json: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(here.join("told.json")).unwrap()).unwrap();
+    assert!(json["lessons"][0]["numbers"]["answer: coming"].as_f64().unwrap() < -11.0);
+    for (arguments, part) in [
+        (&["teach", "dopler"][..], "doppler"),
+        (&["teach", "cube", "--html"], "--output"),
+        (&["teach", "-o", "there"], "--all"),
+        (&["teach", "--answer"], "--all"),
+        (&["teach", "cube", "--all"], "--all"),
+        (&["teach", "rods", "-o", "told.json"], "not a folder"),
+    ] {
+        let said = bad(arguments, here);
+        assert!(said.contains(part), "{arguments:?}: {said}");
+    }
+    assert!(!here.join("there").exists());
+}
