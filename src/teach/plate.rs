@@ -9,7 +9,7 @@ use crate::render::{Options, RenderError, render_again};
 use crate::scene::{AnimationError, Camera, LensError, NoSuchScene, Scene, SceneError, ViewError};
 use crate::tone::Tone;
 use std::fmt::{Debug, Formatter};
-use terrell_geodesic::{CelerityError, TetradError};
+use terrell_geodesic::{CelerityError, DistantCameraError, KerrError, TetradError};
 
 /// Something to see, not drawn yet.
 #[derive(Debug)]
@@ -109,6 +109,12 @@ pub enum TeachError {
     /// A lens that cannot be.
     #[error(transparent)]
     Lens(#[from] LensError),
+    /// A black hole that cannot be.
+    #[error(transparent)]
+    Kerr(#[from] KerrError),
+    /// A ray of a distant camera that cannot be.
+    #[error(transparent)]
+    DistantCamera(#[from] DistantCameraError),
     /// Axes that cannot be.
     #[error(transparent)]
     Tetrad(#[from] TetradError),
@@ -186,7 +192,7 @@ fn png((width, height, pixels): Pixels) -> Result<Drawn, TeachError> {
 }
 
 /// Pixels across and down of a lesson's pictures.
-const SIZE: [u32; 2] = [640, 400];
+const SIZE: [u32; 2] = [640, 360];
 
 impl Shot {
     /// Of a scene's shapes, by the colours surfaces have.

@@ -37,7 +37,7 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         let seen =
             |beta: f64| Ok::<_, TeachError>(passing(beta)?.see(DVec3::new(place, 1.0, 0.0)).position.x);
         rows.push([
-            crate::drawing::number::fixed(place, 0),
+            super::whole(place),
             l.fixed(format!("ball at {place}, 0.5c"), seen(0.5)?, 3),
             l.fixed(format!("ball at {place}, 0.9c"), seen(0.9)?, 3),
             l.fixed(format!("ball at {place}, 0.99c"), seen(0.99)?, 3),

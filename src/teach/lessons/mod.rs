@@ -1,13 +1,18 @@
 //! A file a lesson.
 
+mod bending;
 mod cube;
 mod doppler;
+mod fields;
 mod gate;
 mod lattice;
+mod lights;
+mod observer;
 mod rods;
 mod searchlight;
 mod seeing;
 mod shadows;
+mod sphere;
 
 use super::lecture::Lecture;
 use super::plate::{Shot, TeachError};
@@ -31,7 +36,7 @@ pub struct Lesson {
     make: fn() -> Result<Lecture, TeachError>,
 }
 
-static LESSONS: [Lesson; 8] = [
+static LESSONS: [Lesson; 13] = [
     Lesson {
         name: "seeing",
         title: "Seeing is not measuring",
@@ -54,6 +59,13 @@ static LESSONS: [Lesson; 8] = [
         make: lattice::lecture,
     },
     Lesson {
+        name: "observer",
+        title: "The intelligent observer",
+        about: "from the picture back to the true shape",
+        source: "The paper, section 2.1.2",
+        make: observer::lecture,
+    },
+    Lesson {
         name: "cube",
         title: "The cube that seems to turn",
         about: "a shear that looks like a turn by arcsin β, and when it does not",
@@ -66,6 +78,20 @@ static LESSONS: [Lesson; 8] = [
         about: "flying through it at 0.99c, forward and looking back",
         source: "The paper, Fig. 3",
         make: gate::lecture,
+    },
+    Lesson {
+        name: "sphere",
+        title: "The sphere stays round",
+        about: "why the outline of a fast sphere is a circle",
+        source: "R. Penrose, Proc. Camb. Phil. Soc. 55 (1959) 137",
+        make: sphere::lecture,
+    },
+    Lesson {
+        name: "fields",
+        title: "Fields of view",
+        about: "which distortion is the camera’s, and which relativity’s",
+        source: "The paper, section 2.1",
+        make: fields::lecture,
     },
     Lesson {
         name: "doppler",
@@ -82,11 +108,25 @@ static LESSONS: [Lesson; 8] = [
         make: searchlight::lecture,
     },
     Lesson {
+        name: "lights",
+        title: "Lights and aberration",
+        about: "where a distant light shines from on what moves",
+        source: "The paper, section 2.2.3",
+        make: lights::lecture,
+    },
+    Lesson {
         name: "shadows",
         title: "Shadows need rays",
         about: "shadows that are late, seen twice, and faster than light",
         source: "The paper, section 2.2.4",
         make: shadows::lecture,
+    },
+    Lesson {
+        name: "bending",
+        title: "Light bends",
+        about: "a first look at curved spacetime: rays as short straight pieces",
+        source: "The paper, section 3 and Fig. 6",
+        make: bending::lecture,
     },
 ];
 
@@ -131,6 +171,11 @@ impl Lesson {
 fn passing(beta: f64) -> Result<ApparentMap, TeachError> {
     let motion = Motion { celerity: Celerity::from_beta(DVec3::X * beta)?, origin: Event::origin() };
     Ok(ApparentMap::new(&motion, &Tetrad::of_world(Event::origin())))
+}
+
+/// A whole number, as people write it.
+fn whole(value: f64) -> String {
+    crate::drawing::number::fixed(value, 0)
 }
 
 /// A scene that ships, at another speed.

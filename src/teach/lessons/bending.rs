@@ -1,0 +1,140 @@
+use crate::figure::{Axis, Figure, Panel, Series, Stroke};
+use crate::measure::schwarzschild_deflection;
+use crate::scene::builtin_scene;
+use crate::teach::lecture::Lecture;
+use crate::teach::plate::{Plate, Shot, TeachError};
+use terrell_geodesic::{Accuracy, Curved, DistantCamera, End, KerrSchild, Segment, Spacetime};
+
+pub(super) fn lecture() -> Result<Lecture, TeachError> {
+    let mut lecture = Lecture::default();
+    let l = &mut lecture;
+    l.text(
+        "Near a heavy mass light does not run straight. Then there is no map from a point to where it is seen, as there may be several; but rays can still be \
+         followed, and a tracer need not know of curvature. The paper’s idea (Section 3.4): whatever knows the spacetime hands the tracer short straight pieces.",
+    );
+    let hole = KerrSchild::schwarzschild(1.0)?;
+    l.plates([Plate::figure(
+        "rays",
+        "Rays past a black hole of mass 1 (grey: its horizon at 2; dashed: light can circle at 3), from the right. Those that pass nearer than 5.196 end in it.",
+        rays(&hole)?,
+    )]);
+    l.heading("How much");
+    l.text("Far away a ray at the distance b is bent by 4M/b, Einstein’s value; near the hole by more, and without bound where b comes to 3√3 M.");
+    let mut rows = Vec::new();
+    for b in [100.0, 30.0, 10.0, 6.0, 5.3, 5.2] {
+        let traced = deflection(&hole, b)?;
+        rows.push([
+            format!("{b}"),
+            l.fixed(format!("deflection at b = {b}, traced, degrees"), traced.to_degrees(), 3),
+            l.fixed(
+                format!("deflection at b = {b}, closed form, degrees"),
+                schwarzschild_deflection(b).to_degrees(),
+                3,
+            ),
+            l.fixed(format!("4M/b at b = {b}, degrees"), (4.0 / b).to_degrees(), 3),
+        ]);
+    }
+    l.table(["b/M", "traced (°)", "closed form (°)", "4M/b (°)"], rows);
+    let critical = l.fixed("critical b", 27f64.sqrt(), 4);
+    let count = |tolerance: f64| pieces(&hole, tolerance);
+    let (coarse, fine) = (
+        l.fixed("pieces to 0.1 M", count(0.1)? as f64, 0),
+        l.fixed("pieces to 0.001 M", count(0.001)? as f64, 0),
+    );
+    l.text(format!(
+        "Rays with b below 3√3 M = {critical} M are caught: so large is the black disc that is seen. The ray with b = 6 M, cut so that its pieces are nowhere further than 0.1 M from \
+         it, takes {coarse}; to 0.001 M {fine}."
+    ));
+    l.heading("What it looks like");
+    let scene = builtin_scene("blackhole")?.scene();
+    let mut without = scene.clone();
+    without.spacetime = crate::scene::Spacetime::Flat;
+    let shot = |scene| {
+        let mut shot = Shot::new(scene);
+        shot.samples = 1;
+        shot
+    };
+    l.plates([
+        Plate::shot("without", "A globe and three cubes before a checkered sky.", shot(without)),
+        Plate::shot("hole", "The same around a rotating black hole: the globe behind it is seen around it, twice; the sky is wrapped around.", shot(scene)),
+    ]);
+    l.attempt("terrell render blackhole", "the second picture, larger");
+    l.attempt("terrell scenes blackhole > mine.toml", "a scene to change: mass, spin, camera");
+    l.attempt("terrell chart --geodesics --quick -o rays", "what following rays costs, and how exact it is");
+    let answer = l.fixed(
+        "answer: deflection at the sun’s edge, arc seconds",
+        (4.0 * 1.4766 / 695_700.0f64).to_degrees() * 3600.0,
+        2,
+    );
+    l.ask(
+        "The sun’s mass is 1.4766 km in these units, and its radius 695 700 km. By how much is light bent that grazes it?",
+        format!("4M/b = 4 · 1.4766/695 700 = {answer} seconds of arc, as was seen in 1919."),
+    );
+    Ok(lecture)
+}
+
+/// How far a ray from far away at an impact parameter is turned on its way to the sky.
+fn deflection(hole: &KerrSchild, b: f64) -> Result<f64, TeachError> {
+    let camera = DistantCamera::at_infinity(*hole, std::f64::consts::FRAC_PI_2)?;
+    let (event, k) = camera.ray(b, 0.0)?;
+    let space = Curved::new(*hole).with(Accuracy::new(1e-12, 0.01));
+    let before = far_direction(&camera)?;
+    Ok(match space.ray(event, k).follow() {
+        End::Sky { wave_vector } => {
+            let n = wave_vector.xyz().normalize();
+            let turned = before.cross(n).length().atan2(before.dot(n));
+            // How often it goes around the hole before cannot be told from where it comes from.
+            let turns = (0..4).map(|k| std::f64::consts::TAU * f64::from(k));
+            let all = turns.flat_map(|whole| [whole + turned, whole - turned]);
+            let off = |angle: &f64| (angle - schwarzschild_deflection(b)).abs();
+            all.min_by(|x, y| off(x).total_cmp(&off(y))).unwrap_or(turned)
+        }
+        _ => f64::INFINITY,
+    })
+}
+
+/// The direction of rays of a camera far away.
+fn far_direction(camera: &DistantCamera) -> Result<glam::DVec3, TeachError> {
+    let (_, k) = camera.ray(1e9, 0.0)?;
+    Ok(k.xyz().normalize())
+}
+
+/// Into how many pieces the ray at 6 M is cut.
+fn pieces(hole: &KerrSchild, sagitta: f64) -> Result<usize, TeachError> {
+    let (event, k) = DistantCamera::at_distance(*hole, std::f64::consts::FRAC_PI_2, 100.0)?.ray(6.0, 0.0)?;
+    Ok(Curved::new(*hole).with(Accuracy::new(1e-9, sagitta)).ray(event, k).count())
+}
+
+fn rays(hole: &KerrSchild) -> Result<Figure, TeachError> {
+    let camera = DistantCamera::at_distance(*hole, std::f64::consts::FRAC_PI_2, 40.0)?;
+    let space = Curved::new(*hole).with(Accuracy::new(1e-8, 0.01));
+    let circle = |radius: f64| {
+        (0..=180).map(move |i| {
+            let (sine, cosine) = (f64::from(i) * 2.0).to_radians().sin_cos();
+            [radius * cosine, radius * sine]
+        })
+    };
+    let mut series = vec![
+        Series { ink: Some([120; 3]), ..Series::line("", circle(2.0)) },
+        Series { ink: Some([150; 3]), stroke: Stroke::Dashed, ..Series::line("", circle(3.0)) },
+    ];
+    for b in [-12.0, -9.0, -7.0, -6.0, -5.3, -4.0, -2.0, 0.0, 2.0, 4.0, 5.3, 6.0, 7.0, 9.0, 12.0] {
+        let (event, k) = camera.ray(b, 0.0)?;
+        let mut points = Vec::new();
+        for Segment { start, direction, length, .. } in space.ray(event, k) {
+            let p = start.position();
+            points.push([p.x, p.y]);
+            let end = p + direction.xyz() * length.min(60.0);
+            points.push([end.x, end.y]);
+        }
+        let ink = if f64::abs(b) < 27f64.sqrt() { [190, 60, 30] } else { [20, 80, 160] };
+        series.push(Series { ink: Some(ink), ..Series::line("", points) });
+    }
+    let panel = Panel {
+        x: Axis::linear("x/M").from_to(-20.0, 20.0),
+        y: Axis::linear("y/M").from_to(-15.0, 15.0),
+        series,
+        ..Panel::default()
+    };
+    Ok(Figure { rows: vec![vec![panel]], panel_size: [560.0, 420.0], ..Figure::default() })
+}
