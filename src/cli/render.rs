@@ -2,9 +2,11 @@ use super::Fault;
 use super::drawing::{self, DrawingFlags};
 use super::explain::{self, ExplainFlag};
 use super::look::{LookFlags, MomentFlags};
+use super::progress::progress_bar;
 use super::report::{ReportFlags, check_target};
 use super::summary;
 use clap::Args;
+use indicatif::ProgressBar;
 use serde_json::json;
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -76,11 +78,11 @@ impl Render {
         let prepared = options.prepare(&scene, [&camera])?;
         let tables = start.elapsed() - read;
         scene.notes.extend(summary::table_notes(&prepared.shading));
-        let report = render_again(&scene, &camera, &options, &prepared, &mut film, |step| {
-            progress.show(&scene, step)
-        })?;
+        let report =
+            render_again(&scene, &camera, &options, &prepared, &mut film, |step| progress.show(&scene, step));
+        progress.finish();
+        let report = report?;
         scene.notes.extend(summary::gpu_note(&report));
-        progress.clear();
         let to_lights = report.rays.as_ref().map_or(&[][..], |rays| &rays.to_lights);
         let dark = summary::dark_lights(to_lights, &scene, &camera.observer);
         if let Some(light) = dark.iter().find(|light| light.shut_in) {
@@ -133,16 +135,19 @@ impl Render {
     }
 }
 
-/// What is going on, on a terminal only.
+/// What is going on, on a terminal only: a line, or, where something is counted that takes long, a bar.
 struct Progress {
     shown: bool,
     terminal: bool,
+    quiet: bool,
     start: Instant,
+    bar: Option<ProgressBar>,
 }
 
 impl Progress {
     fn new(quiet: bool) -> Self {
-        Self { shown: false, terminal: !quiet && std::io::stderr().is_terminal(), start: Instant::now() }
+        let terminal = !quiet && std::io::stderr().is_terminal();
+        Self { shown: false, terminal, quiet, start: Instant::now(), bar: None }
     }
 
     fn show(&mut self, scene: &Scene, step: Step) {
@@ -157,17 +162,31 @@ impl Progress {
                 scene.bodies.len()
             ),
             Step::Drawing => "drawing".to_owned(),
-            Step::Rows { done, of } => format!("drawing: {done} of {of} rows"),
             Step::Tracing { of: 1, .. } => "tracing".to_owned(),
-            Step::Tracing { done, of } => format!("tracing, {done} of {of} samples"),
+            Step::Rows { done, of } => return self.count(done as usize, of as usize, "rows"),
+            Step::Tracing { done, of } => return self.count(done, of, "samples of every pixel"),
         };
         eprint!("\r\x1b[K{what} … {:.1} s", self.start.elapsed().as_secs_f64());
         self.shown = true;
     }
 
-    fn clear(&self) {
-        if self.shown {
+    fn count(&mut self, done: usize, of: usize, what: &str) {
+        self.clear();
+        let quiet = self.quiet;
+        self.bar.get_or_insert_with(|| progress_bar(of, what, quiet)).set_position(done as u64);
+    }
+
+    fn clear(&mut self) {
+        if std::mem::take(&mut self.shown) {
             eprint!("\r\x1b[K");
+        }
+    }
+
+    /// When it is done.
+    fn finish(mut self) {
+        self.clear();
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
         }
     }
 }
