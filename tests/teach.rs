@@ -415,6 +415,8 @@ fn the_command_lists_tells_answers_and_draws() {
     );
     assert!(good(&["teach", "doppler", "--answer"], here).contains("3.0000 and 0.3333"));
     assert_eq!(std::fs::read_dir(here).unwrap().count(), 0);
+    good(&["teach", "doppler", "--answer", "--json", "answer.json"], here);
+    assert!(std::fs::read_to_string(here.join("answer.json")).unwrap().contains("3.0000 and 0.3333"));
     let said = good(&["teach", "rods", "--html", "-o", "made", "--json", "told.json"], here);
     assert!(said.contains("open made/rods.html"), "{said}");
     for file in ["rods.html", "rods-hyperbolas.svg", "rods-hyperbolas.png", "rods-mast.png"] {

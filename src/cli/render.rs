@@ -139,7 +139,6 @@ impl Render {
 struct Progress {
     shown: bool,
     terminal: bool,
-    quiet: bool,
     start: Instant,
     bar: Option<ProgressBar>,
 }
@@ -147,7 +146,7 @@ struct Progress {
 impl Progress {
     fn new(quiet: bool) -> Self {
         let terminal = !quiet && std::io::stderr().is_terminal();
-        Self { shown: false, terminal, quiet, start: Instant::now(), bar: None }
+        Self { shown: false, terminal, start: Instant::now(), bar: None }
     }
 
     fn show(&mut self, scene: &Scene, step: Step) {
@@ -172,8 +171,7 @@ impl Progress {
 
     fn count(&mut self, done: usize, of: usize, what: &str) {
         self.clear();
-        let quiet = self.quiet;
-        self.bar.get_or_insert_with(|| progress_bar(of, what, quiet)).set_position(done as u64);
+        self.bar.get_or_insert_with(|| progress_bar(of, what, false)).set_position(done as u64);
     }
 
     fn clear(&mut self) {

@@ -70,7 +70,7 @@ impl Teach {
         if self.answer {
             let texts = lectures.iter().map(|(_, lecture)| answer(lecture, width, colored));
             let said: String = texts.collect::<Vec<_>>().join("\n");
-            return self.report.tell(&said, &summary(&lectures, &[]));
+            return self.tell(&said, &summary(&lectures, &[]));
         }
         let mut said = String::new();
         if !self.all || self.output.is_none() {
@@ -80,15 +80,19 @@ impl Teach {
                 .map(|(lesson, lecture)| told(lesson, lecture, width, colored, folder.as_deref()));
             said = texts.collect::<Vec<_>>().join("\n\n");
         }
-        let written = match &self.output {
-            Some(folder) => self.write(folder, lectures, &mut said)?,
-            None => {
-                let summary = summary(&lectures, &[]);
-                self.report.finish(Vec::new(), &[], &summary)?;
-                summary
+        match &self.output {
+            Some(folder) => {
+                let written = self.write(folder, lectures, &mut said)?;
+                self.report.tell(&said, &written)
             }
-        };
-        self.report.tell(&said, &written)
+            None => self.tell(&said, &summary(&lectures, &[])),
+        }
+    }
+
+    /// Tells what nothing is drawn of.
+    fn tell(&self, said: &str, summary: &Value) -> Result<(), Fault> {
+        self.report.finish(Vec::new(), &[], summary)?;
+        self.report.tell(said, summary)
     }
 
     fn list(&self) -> Result<(), Fault> {
@@ -99,8 +103,7 @@ impl Teach {
         let told: Vec<Value> =
             lessons().iter().map(|l| json!({ "name": l.name, "title": l.title, "about": l.about })).collect();
         let summary = json!({ "terrell": env!("CARGO_PKG_VERSION"), "lessons": told });
-        self.report.finish(Vec::new(), &[], &summary)?;
-        self.report.tell(&said, &summary)
+        self.tell(&said, &summary)
     }
 
     /// Draws everything, then writes it.

@@ -1,5 +1,4 @@
 use crate::color::Coloring;
-use crate::drawing::{Overlay, OverlayOptions};
 use crate::exposure::Exposure;
 use crate::figure::Figure;
 use crate::film::Film;
@@ -9,6 +8,7 @@ use crate::render::{Options, RenderError, render_again};
 use crate::scene::{AnimationError, Camera, LensError, NoSuchScene, Scene, SceneError, ViewError};
 use crate::tone::Tone;
 use std::fmt::{Debug, Formatter};
+use std::rc::Rc;
 use terrell_geodesic::{CelerityError, DistantCameraError, KerrError, TetradError};
 
 /// Something to see, not drawn yet.
@@ -48,8 +48,6 @@ pub struct Shot {
     pub method: Option<Method>,
     /// Samples a pixel.
     pub samples: u32,
-    /// What is drawn on top.
-    pub overlay: OverlayOptions,
 }
 
 /// Frames one after the other.
@@ -58,8 +56,8 @@ pub struct Reel {
     pub frames: usize,
     /// How many are shown in a second.
     pub fps: f64,
-    /// Draws one.
-    pub frame: Box<Frame>,
+    /// Makes all that is the same for all of them, and then what draws them.
+    pub open: Box<dyn Fn() -> Result<Box<Frame>, TeachError>>,
 }
 
 /// Draws the frame of a number: width, height, and three bytes of sRGB a pixel.
@@ -198,8 +196,8 @@ impl Shot {
     /// Of a scene's shapes, by the colours surfaces have.
     pub fn new(mut scene: Scene) -> Self {
         scene.view.size = SIZE;
-        let (exposure, tone, method, overlay) = Default::default();
-        Self { scene, coloring: Coloring::Geometry, exposure, tone, method, samples: 4, overlay }
+        let (exposure, tone, method) = Default::default();
+        Self { scene, coloring: Coloring::Geometry, exposure, tone, method, samples: 4 }
     }
 
     /// The same with another coloring.
@@ -233,7 +231,7 @@ impl Shot {
     /// As a film of the scene's own animation, or of the usual one, in so many frames.
     ///
     /// # Errors
-    /// If there is no such film, or it cannot be metered.
+    /// If there is no such film.
     pub fn reel(mut self, frames: u32, fps: f64) -> Result<Reel, TeachError> {
         let mut animation = match self.scene.animation.take() {
             Some(animation) => animation,
@@ -241,7 +239,8 @@ impl Shot {
         };
         animation.frames = frames;
         let cameras = animation.cameras(&self.scene)?;
-        Ok(Reel { frames: cameras.len(), fps, frame: Box::new(self.frames(cameras)?) })
+        let open = move || Ok::<Box<Frame>, _>(Box::new(self.frames(cameras.clone())?));
+        Ok(Reel { frames: frames as usize, fps, open: Box::new(open) })
     }
 
     /// What draws the pictures of these cameras, at one exposure.
@@ -253,23 +252,10 @@ impl Shot {
         let shot = self.clone();
         let prepared = options.prepare(&shot.scene, &cameras)?;
         let development = self.exposure().of_film(self.tone(), &self.scene, &cameras, &options)?;
-        let overlay = if shot.overlay == OverlayOptions::default() {
-            None
-        } else {
-            Overlay::new(&shot.scene, shot.overlay.clone()).ok()
-        };
         Ok(move |i: usize| {
-            let camera = &cameras[i];
             let mut film = Film::new(0, 0);
-            render_again(&shot.scene, camera, &options, &prepared, &mut film, |_| ())?;
-            let mut pixels = pixels_srgb(&film, &development);
-            if let Some(overlay) = &overlay {
-                let (scene, tolerance) = (&shot.scene, options.tolerance);
-                let coloring = shot.coloring;
-                let shot =
-                    crate::drawing::Shot { scene, camera, film: &film, tolerance, coloring, development };
-                overlay.draw(&mut pixels, &shot);
-            }
+            render_again(&shot.scene, &cameras[i], &options, &prepared, &mut film, |_| ())?;
+            let pixels = pixels_srgb(&film, &development);
             Ok((film.width, film.height, pixels))
         })
     }
@@ -278,18 +264,24 @@ impl Shot {
 impl Reel {
     /// Of figures, drawn frame by frame.
     pub(super) fn of_figures(frames: usize, fps: f64, figure: impl Fn(usize) -> Figure + 'static) -> Self {
-        let frame = move |i: usize| figure(i).page().pixels(1.0).ok_or(TeachError::Empty);
-        Self { frames, fps, frame: Box::new(frame) }
+        let figure = Rc::new(figure);
+        let open = move || {
+            let figure = figure.clone();
+            let frame = move |i: usize| figure(i).page().pixels(1.0).ok_or(TeachError::Empty);
+            Ok::<Box<Frame>, _>(Box::new(frame))
+        };
+        Self { frames, fps, open: Box::new(open) }
     }
 
     /// The film, as MP4.
     fn film(&self) -> Result<Vec<u8>, TeachError> {
-        let (width, height, first) = (self.frame)(0)?;
+        let frame = (self.open)()?;
+        let (width, height, first) = frame(0)?;
         let to = std::io::Cursor::new(Vec::new());
         let mut movie = Movie::new(MovieFormat::Mp4, to, width, height, self.fps)?;
         movie.push(&first)?;
         for i in 1..self.frames {
-            movie.push(&(self.frame)(i)?.2)?;
+            movie.push(&frame(i)?.2)?;
         }
         Ok(movie.finish()?.into_inner())
     }
