@@ -259,7 +259,7 @@ fn main() {
     let reference = Curved::new(hole).with(accuracy(1e-13));
     let exact: Vec<_> = far.iter().map(|&ray| disc_hit(&reference, &hole, ray).0).collect();
     let mut rows = Vec::new();
-    for tolerance in [1e-5, 3e-6, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
+    for tolerance in [1e-5, 3e-6, 1e-6, 1e-7, 1e-8, 5e-9, 1e-9, 1e-10] {
         let metric = Curved::new(ByMetric(hole)).with(accuracy(tolerance));
         rows.push(to_the_disc(&format!("g alone, DOP853 {tolerance:e}"), &metric, &far, &exact));
     }

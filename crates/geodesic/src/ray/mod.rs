@@ -15,6 +15,8 @@ pub struct LightRay<'a, L> {
     slope: [f64; 8],
     /// The step to try next.
     h: f64,
+    /// The eighth root of the tolerance, in which steps are measured beforehand.
+    stride: f64,
     /// Error and length of the last accepted step.
     before: Option<(f64, f64)>,
     outward: Option<Outward>,
@@ -56,6 +58,7 @@ impl<'a, L: Law> LightRay<'a, L> {
             state: [f64::NAN; 8],
             slope: [f64::NAN; 8],
             h: 0.0,
+            stride: accuracy.tolerance.powf(0.125),
             before: None,
             outward: None,
             off_cone: 0.0,
@@ -94,7 +97,7 @@ impl<'a, L: Law> LightRay<'a, L> {
             return Err(End::NotANumber);
         }
         // A fifth of the way to the origin at a tolerance of 1e-8; refused if that is too far.
-        self.h = 2.0 * self.accuracy.tolerance.powf(0.125) * (self.law.scale() + length(&x[1..])) / speed;
+        self.h = 2.0 * self.stride * (self.law.scale() + length(&x[1..])) / speed;
         self.shorten();
         Ok(())
     }
@@ -192,7 +195,9 @@ impl<'a, L: Law> LightRay<'a, L> {
         let velocity = &self.slope[1..4];
         let r = length(place);
         let inward = -(0..3).map(|i| place[i] * velocity[i]).sum::<f64>() > 0.5 * r * length(velocity);
-        let most = if inward { 0.8 } else { 6.0 } * (self.law.scale() + r) / length(velocity);
+        // About half of the way in at a tolerance of 1e-8: what would be refused is not tried.
+        let most = if inward { (5.5 * self.stride).min(0.8) } else { 6.0 } * (self.law.scale() + r)
+            / length(velocity);
         self.h = self.h.min(most);
     }
 
