@@ -99,6 +99,9 @@ pub enum TransformError {
 ///
 /// # Errors
 /// If the tolerance cannot be kept.
+///
+/// # Panics
+/// If there is no moment.
 pub fn transform(
     scene: &Scene,
     camera: &Camera,
@@ -115,7 +118,7 @@ pub fn transform(
     let mut report = Report { tables: shading.tables().to_vec(), ..Report::default() };
     let mut objects = Vec::with_capacity(scene.bodies.len());
     for (index, body) in scene.bodies.iter().enumerate() {
-        let left = options.most_pieces - report.pieces;
+        let left = options.most_pieces.saturating_sub(report.pieces);
         let size = diagonal(body);
         let usual = if size > 0.0 { USUAL_TOLERANCE * size } else { USUAL_TOLERANCE };
         let tolerance = options.tolerance.unwrap_or(usual);

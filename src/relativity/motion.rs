@@ -13,7 +13,8 @@ pub struct Motion {
 }
 
 /// A body that does not move relative to the camera is never seen to pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the body and the camera are at rest relative to each other, so it is never seen to pass")]
 pub struct NeverAbreast;
 
 impl Motion {

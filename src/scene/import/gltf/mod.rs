@@ -62,7 +62,8 @@ const KNOWN_EXTENSIONS: [&str; 4] = [
 
 /// Parses and validates; what the validator underneath trusts is looked at first.
 fn open(bytes: &[u8]) -> Result<gltf::Gltf, String> {
-    let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|e| e.to_string())?;
+    let unchecked =
+        gltf::Gltf::from_slice_without_validation(bytes).map_err(|e| format!("it is no glTF file: {e}"))?;
     let json = unchecked.document.into_json();
     let primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
     for accessor in primitives.flat_map(|primitive| primitive.attributes.values()) {
