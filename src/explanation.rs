@@ -142,9 +142,15 @@ impl Subject<'_> {
             Method::Trace if self.lacks(Method::Exact).is_empty() => {
                 match Tracer::is_listed(scene, cameras.len()) {
                     true => "exact, too, but it builds boxes around all triangles first",
+                    false if options.paths.bounces > 0 => {
+                        "exact, too; there is nothing here that reflects onto anything"
+                    }
                     false => "exact, too; without reflections, what exact shading does",
                 }
                 .to_owned()
+            }
+            Method::Trace if options.paths.bounces == 0 => {
+                "the one that can follow light from surface to surface, which is not asked for".to_owned()
             }
             Method::Trace => "the one that follows light from surface to surface".to_owned(),
         };

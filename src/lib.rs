@@ -32,6 +32,7 @@
 //! | Eq. 5 | [`spectrum::Response`], [`light::Shading`] | I_ν/ν³ is invariant: spectra and colours under a shift |
 //! | section 2.2.3 | [`light::SeenShading::radiance`] | lights, aberrated, in each body's rest frame |
 //! | section 2.2.4 | [`trace::Tracer`] | shadows and reflections by rays, with light travel time |
+//! | section 2.1.2 | [`relativity::ApparentMap::unsee`], [`detectors::seen_from`] | from pictures back to shapes; these from aside |
 //! | beyond it | [`trace::Tracer::exact`] | triangles tested pixel by pixel, nothing cut |
 //! | Fig. 7 | [`geodesic::Spacetime`] | what hands straight segments to whoever looks |
 //!
@@ -48,12 +49,13 @@
 //! # Reading order
 //!
 //! [`geodesic`] (events, Lorentz maps, observers) → [`relativity`] (the map) → [`scene`] (what is there) →
-//! [`apparent`] (what it looks like), [`spectrum`] and [`light`] (what it shines with) → [`plan`] (how it is drawn; [`explanation`] says why) → [`raster`], or [`trace`] → [`film`] →
+//! [`apparent`] (what it looks like), [`spectrum`] and [`light`] (what it shines with) → [`plan`] (how it is drawn; [`explanation`] says why, [`outlook`] what is to be seen) → [`raster`], or [`trace`] → [`film`] →
 //! [`exposure`], [`tone`] → [`drawing`] → [`picture`]; [`mod@render`] runs them in turn. [`measure`] says how far two
 //! films are apart, [`figure`] draws what was measured, [`teach`] tells what is to be learnt of it all. [`mod@transform`] instead makes a [`export::Model`] for other programs of what there is and how it looks.
 
 pub mod apparent;
 pub mod color;
+pub mod detectors;
 pub mod drawing;
 pub mod explanation;
 pub mod export;
@@ -62,6 +64,7 @@ pub mod figure;
 pub mod film;
 pub mod light;
 pub mod measure;
+pub mod outlook;
 pub mod picture;
 pub mod plan;
 pub mod raster;
@@ -75,3 +78,8 @@ pub mod trace;
 pub mod transform;
 
 pub use terrell_geodesic as geodesic;
+
+/// The examples of the library guide.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+mod guide {}

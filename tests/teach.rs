@@ -5,7 +5,7 @@ mod program;
 
 use program::{bad, good, pixels};
 use std::collections::HashSet;
-use terrell::teach::{What, lesson, lessons, page, told};
+use terrell::teach::{Lecture, What, lesson, lessons, page, told};
 
 /// √((1 + β)/(1 − β)).
 fn ahead(beta: f64) -> f64 {
@@ -18,7 +18,11 @@ fn gamma(beta: f64) -> f64 {
 
 /// All of a lesson's numbers are these, to a relative tolerance each; none is left out.
 fn tells(name: &str, expected: &[(String, f64, f64)]) {
-    let lecture = lesson(name).unwrap().lecture().unwrap();
+    tells_like(&lesson(name).unwrap().lecture().unwrap(), name, expected);
+}
+
+/// As [`tells`], of a lecture made before: what is measured differs from one to the next.
+fn tells_like(lecture: &Lecture, name: &str, expected: &[(String, f64, f64)]) {
     let told: HashSet<&str> = lecture.numbers.iter().map(|n| n.name.as_str()).collect();
     assert_eq!(told.len(), lecture.numbers.len(), "{name} has two numbers of one name");
     for (number, value, tolerance) in expected {
@@ -306,6 +310,137 @@ fn lights() {
 }
 
 #[test]
+fn telescopes() {
+    const PI: f64 = std::f64::consts::PI;
+    // Kilometres and seconds.
+    let (light, au, year) = (299_792.458, 149_597_870.7, 365.25 * 86_400.0);
+    let parsec = au * 648_000.0 / PI;
+    // Rayleigh’s criterion, ten elements across; metres for kilometres.
+    let aperture = |nanometres: f64, distance: f64, size: f64| 12.2 * nanometres * 1e-9 * distance / size;
+    let star = |size: f64| aperture(550.0, 1.30 * parsec, size);
+    let hubble = 1.22 * 550e-9 / 2.4 * 16e6 * parsec / (light * year);
+    let turning = 0.9 * light / 384_400.0 * 180.0 / PI;
+    let (galaxy, earth) = (aperture(550.0, 8e3 * parsec, 10.0), 12_742.0);
+    let mut expected = vec![
+        exact("aperture as far as Proxima Centauri, Earth’s diameters", star(10.0) / earth / 1e3),
+        exact("aperture as far as the Galaxy’s centre, ways to the sun", galaxy / au / 1e3),
+        exact("aperture for an Earth as far as Proxima Centauri, km", star(earth) / 1e3),
+        exact("aperture for a sun as far as Proxima Centauri, metres", star(2.0 * 695_700.0)),
+        exact("radio dishes around the Earth, as a mirror of km", earth * 550e-9 / 1.3e-3),
+        exact("seen at 550 nm coming at 0.9, sent at, nm", 550.0 * ahead(0.9)),
+        exact("time for its own size at 0.9c, microseconds", 10e6 / (0.9 * light)),
+        exact("exposure at 0.9c, microseconds", 1e6 / (0.9 * light)),
+        exact("turning with it as far as the moon, degrees a second", turning),
+        exact("temperature seen abreast at 0.9c, kelvin", 5772.0 / gamma(0.9)),
+        // As its discoverers say it: γ of 6 at least, within 19° of the line of sight.
+        ("least γ of what is seen at 6c".into(), 6.0, 0.02),
+        exact("least β of what is seen at 6c", (1.0 - 1.0 / 37.0f64).sqrt()),
+        ("largest θ of what is seen at 6c, degrees".into(), 19.0, 0.01),
+        exact("what Hubble tells apart in M 87, light years", hubble),
+        exact("time for that at 6c, years", hubble / 6.0),
+        exact("try: seen to move at 0.8c from cos θ = 0.8", 20.0 / 9.0),
+        exact("try: across the line of sight", 4.0 / 3.0),
+        exact("answer: D ahead at 0.8c", 3.0),
+        exact("answer: arriving at, nm", 550.0 / 3.0),
+        exact("answer: aperture, metres", aperture(550.0, au, 10.0) / 3.0),
+    ];
+    for (place, distance, unit, seconds) in [
+        ("the moon", 384_400.0, "seconds", 1.0),
+        ("the sun", au, "minutes", 60.0),
+        ("Neptune", 30.07 * au, "hours", 3600.0),
+        ("Proxima Centauri", 1.30 * parsec, "years", year),
+        ("the Galaxy’s centre", 8_000.0 * parsec, "years", year),
+        ("Andromeda", 0.78e6 * parsec, "years", year),
+    ] {
+        expected.push(exact(format!("distance of {place}, km"), distance));
+        expected.push(exact(format!("aperture as far as {place}, metres"), aperture(550.0, distance, 10.0)));
+        let time = 2.0 * distance / (0.9 * light);
+        expected.push(exact(format!("passing as far as {place}, {unit}"), time / seconds));
+    }
+    for beta in [0.5, 0.9, 0.99] {
+        for (way, d) in [("coming", ahead(beta)), ("going", 1.0 / ahead(beta))] {
+            let metres = aperture(550.0, au, 10.0) / d;
+            expected.push(exact(format!("550 nm arrive {way} at {beta}, nm"), 550.0 / d));
+            expected.push(exact(format!("aperture for that {way} at {beta}, metres"), metres));
+        }
+    }
+    for beta in [0.9, 0.99, 0.999f64] {
+        for degrees in [90.0, 20.0, 5.0f64] {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            let seen = beta * sine / (1.0 - beta * cosine);
+            expected.push(exact(format!("seen across at {beta} from {degrees}°"), seen));
+        }
+        expected.push(exact(format!("seen across at {beta} at most"), gamma(beta) * beta));
+        let angle = (1.0 / (gamma(beta) * beta)).atan();
+        expected.push(exact(format!("seen across most at {beta} from, degrees"), angle.to_degrees()));
+    }
+    // Photons of a black body: 2c/a³ times the integral of x²/(eˣ − 1) over x = a/λ, a = hc/(kT), term by term.
+    let photons = |kelvin: f64| {
+        let a = 6.626_070_15e-34 * light * 1e3 / (1.380_649e-23 * kelvin);
+        let beyond = |x: f64| -> f64 {
+            let term = |n: f64| (-n * x).exp() * (x * x / n + 2.0 * x / (n * n) + 2.0 / (n * n * n));
+            (1..40).map(|n| term(f64::from(n))).sum()
+        };
+        2.0 * light * 1e3 / a.powi(3) * (beyond(a / 600e-9) - beyond(a / 500e-9))
+    };
+    let whole = |kelvin: f64| photons(kelvin) * PI / 4.0 * (1.22 * 550e-9f64).powi(2) / (0.9 * light);
+    // Sums by a nanometre: to a 24th of its square times slopes up to a hundredth.
+    let summed = |name: &str, value: f64| (name.to_owned(), value, 1e-5);
+    expected.push(summed("photons of an element at rest, millions", whole(5772.0) / 1e6));
+    let cooler = 5772.0 / gamma(0.9);
+    expected.push(summed("photons of an element abreast at 0.9c, thousands", whole(cooler) / 1e3));
+    tells("telescopes", &expected);
+}
+
+#[test]
+fn speed() {
+    let lecture = lesson("speed").unwrap().lecture().unwrap();
+    let number = |name: &str| lecture.number(name).unwrap();
+    let mut expected = vec![
+        exact("wrong pixels, exact", 0.0),
+        exact("γ up to which lines of sight have digits", 1e5),
+        exact("answer: pieces, by a 64th of the tolerance", 8.0),
+    ];
+    let measured = |name: String| (name.clone(), number(&name), ROUNDING);
+    let mut before = None;
+    for tolerance in [4.0, 1.0, 0.25, 0.0625, 0.015625] {
+        let of = |what: &str| format!("{what} at {tolerance} px");
+        let (pieces, wrong) = (number(&of("pieces")), number(&of("wrong pixels")));
+        // What cutting keeps to, and f64 adds nothing to that can be seen.
+        assert!(number(&of("edges off")) <= tolerance, "{tolerance}");
+        if let Some((more, worse)) = before {
+            // Edges alone would be twice as many, faces alone four times.
+            assert!(pieces >= more && pieces <= 4.2 * more, "{tolerance}: {more} {pieces}");
+            assert!(wrong <= worse, "{tolerance}: {worse} {wrong}");
+        }
+        before = Some((pieces, wrong));
+        assert!(number(&of("milliseconds")) > 0.0);
+        expected
+            .extend(["pieces", "edges off", "wrong pixels", "milliseconds"].map(|what| measured(of(what))));
+    }
+    for series in ["uncut", "exact"] {
+        assert!(number(&format!("milliseconds, {series}")) > 0.0);
+        expected.push(measured(format!("milliseconds, {series}")));
+    }
+    assert!(number("wrong pixels, uncut") > number("wrong pixels at 4 px"));
+    expected.push(measured("wrong pixels, uncut".into()));
+    for gamma in [10.0, 1e3, 1e5, 1e7f64] {
+        let digits = |how: &str| number(&format!("digits of {how}, γ = {gamma}"));
+        // β is off by up to half a unit, βr′ by another: as parts of 1 − β they are 2γ² of that.
+        for (how, epsilon) in [("Eq. 1 in f64", f64::EPSILON), ("Eq. 1 in f32", f32::EPSILON.into())] {
+            let least = -(2.5 * gamma * gamma * epsilon).log10();
+            assert!(digits(how) >= least.max(0.0), "{how}, {gamma}: {} {least}", digits(how));
+            // By luck a few more than that.
+            assert!(digits(how) <= least.max(0.0) + 2.5, "{how}, {gamma}: {} {least}", digits(how));
+        }
+        assert!(digits("what is used") > 15.0);
+        let all = ["Eq. 1 in f64", "Eq. 1 in f32", "what is used"];
+        expected.extend(all.map(|how| measured(format!("digits of {how}, γ = {gamma}"))));
+    }
+    tells_like(&lecture, "speed", &expected);
+}
+
+#[test]
 fn bending() {
     let lecture = lesson("bending").unwrap().lecture().unwrap();
     let number = |name: &str| lecture.number(name).unwrap();
@@ -322,6 +457,17 @@ fn bending() {
         expected.push(exact(format!("deflection at b = {b}, traced, degrees"), traced));
         expected.push(exact(format!("deflection at b = {b}, closed form, degrees"), closed));
         expected.push(exact(format!("4M/b at b = {b}, degrees"), (4.0 / b).to_degrees()));
+    }
+    for distance in [1000.0, 100.0, 22.0f64] {
+        let far = (2.0 / distance).sqrt();
+        expected.push(exact(format!("ring, far away, from {distance} M, degrees"), far.to_degrees()));
+        let name = format!("ring, traced, from {distance} M, degrees");
+        let traced = number(&name).to_radians();
+        // Light is bent by 4M/b + 15πM²/4b² + 128M³/3b³: what that adds to the ring, and what is left.
+        let second = far + 15.0 * std::f64::consts::PI / (32.0 * distance);
+        let left = 2.0 / distance;
+        assert!((traced / second - 1.0).abs() < left + 0.3 * far * far, "{distance}: {traced} {second}");
+        expected.push(exact(name, traced.to_degrees()));
     }
     let (coarse, fine) = (number("pieces to 0.1 M"), number("pieces to 0.001 M"));
     // As one over the root of the sagitta, but for whole numbers and the straight ends.

@@ -111,7 +111,14 @@ impl Animate {
         if self.explain.is_asked() {
             for scene in &self.scenes {
                 let Staged { scene, options, why, cameras, .. } = self.stage(scene, &options)?;
-                explain::tell(&scene, &cameras.iter().collect::<Vec<_>>(), &options, why, &self.report)?;
+                explain::tell(
+                    &scene,
+                    &cameras.iter().collect::<Vec<_>>(),
+                    &options,
+                    why,
+                    None,
+                    &self.report,
+                )?;
             }
             return Ok(());
         }

@@ -1,12 +1,47 @@
-//! `--explain`: what is chosen, and why, instead of drawing.
+//! What will be seen, by which method, and why; the latter also by `--explain`, instead of drawing.
 
 use super::Fault;
+use super::look::{LookFlags, MomentFlags};
 use super::report::ReportFlags;
 use clap::Args;
 use serde_json::{Value, json};
 use terrell::explanation::{Explanation, Verdict};
+use terrell::outlook::Outlook;
 use terrell::render::{Options, Raster};
 use terrell::scene::{Camera, Scene};
+
+/// What will be seen of a scene and why: how fast, how large, how far, which Doppler factors, when each body passes; and the
+/// method that draws it
+///
+/// A small picture is worked out for it; nothing is written. SCENE is as for `terrell render`.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  terrell explain cube
+  terrell explain street --time 40
+  terrell explain statue.glb --gamma 10 --direction 1,0,0
+  terrell explain shadow --json -")]
+pub struct Explain {
+    /// Scene: a name, a .toml file or a mesh
+    scene: String,
+    #[command(flatten)]
+    look: LookFlags,
+    #[command(flatten)]
+    moment: MomentFlags,
+    #[command(flatten)]
+    report: ReportFlags,
+}
+
+impl Explain {
+    pub fn run(self) -> Result<(), Fault> {
+        let mut options = self.look.options()?;
+        let scene = self.look.open(&self.scene, &self.moment)?;
+        let why = self.look.choose(&mut options, &scene)?;
+        let camera = scene.camera()?;
+        scene.eye(&camera)?;
+        let outlook = Outlook::new(&scene, &camera)?;
+        tell(&scene, &[&camera], &options, why, Some(&outlook), &self.report)
+    }
+}
 
 #[derive(Args)]
 pub struct ExplainFlag {
@@ -21,12 +56,13 @@ impl ExplainFlag {
     }
 }
 
-/// Tells how pictures of a scene would be drawn; `why`, if it was not asked for.
+/// Tells how pictures of a scene would be drawn, `why`, if that was not asked for, and what is to be seen on them.
 pub fn tell(
     scene: &Scene,
     cameras: &[&Camera],
     options: &Options,
     why: Option<&str>,
+    outlook: Option<&Outlook>,
     report: &ReportFlags,
 ) -> Result<(), Fault> {
     if options.raster == Raster::Wgpu {
@@ -40,7 +76,7 @@ pub fn tell(
     };
     let contents: serde_json::Map<_, _> =
         contents.iter().map(|(name, what)| ((*name).to_owned(), json!(what))).collect();
-    let summary = json!({
+    let mut summary = json!({
         "terrell": env!("CARGO_PKG_VERSION"),
         "scene": scene.name,
         "method": method.to_string(),
@@ -50,7 +86,32 @@ pub fn tell(
         "methods": verdicts(methods),
         "devices": verdicts(devices),
     });
+    let mut seen = String::new();
+    if let Some(outlook) = outlook {
+        summary["seen"] = seen_by(outlook);
+        seen = outlook.to_string();
+    }
     report.finish(Vec::new(), &scene.files, &summary)?;
     let why = why.unwrap_or("asked for");
-    report.tell(&format!("{}: method {method} on {device} ({why})\n{explanation}", scene.name), &summary)
+    report
+        .tell(&format!("{}: method {method} on {device} ({why})\n{seen}{explanation}", scene.name), &summary)
+}
+
+fn seen_by(outlook: &Outlook) -> Value {
+    let bodies = outlook.prospects.iter().map(|body| {
+        json!({
+            "name": body.name,
+            "gamma": body.gamma,
+            "part_of_picture": body.part,
+            "doppler": body.doppler,
+            "distance": body.distance,
+            "abreast": body.passage.map(|passage| json!({
+                "time": passage.time,
+                "delay": passage.delay,
+                "doppler": passage.doppler,
+                "turn_deg": passage.turn_deg,
+            })),
+        })
+    });
+    json!({ "time": outlook.time, "bodies": bodies.collect::<Vec<_>>(), "remarks": outlook.remarks })
 }

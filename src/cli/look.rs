@@ -222,6 +222,13 @@ enum RasterFlag {
 }
 
 impl LookFlags {
+    /// The scene at the moment asked for, with what the flags say over what it says itself.
+    pub fn open(&self, scene: &str, moment: &MomentFlags) -> Result<Scene, Fault> {
+        let mut scene = self.scene.open(scene, self.scene.velocity.speed()?, |view| self.set_lens(view))?;
+        moment.set(&mut scene)?;
+        Ok(scene)
+    }
+
     pub fn options(&self) -> Result<Options, Fault> {
         let usual = Options::default();
         let tolerance = self.tolerance.unwrap_or(usual.tolerance);
@@ -328,6 +335,10 @@ impl LookFlags {
             };
             if projection != view.projection {
                 (view.projection, view.fov_deg) = (projection, None);
+                if projection == Projection::Panorama {
+                    // As wide as before, and a degree as long across as down.
+                    view.size[1] = view.size[0].div_ceil(2);
+                }
             }
         }
     }

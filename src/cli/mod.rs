@@ -36,7 +36,7 @@ struct Cli {
 const EXAMPLES: &str = "Examples:
   terrell render cube                              the cube of Fig. 2, to cube.png
   terrell render statue.glb --beta 0.9             your own mesh, passing by at 0.9c
-  terrell render shadow --explain                  which method a scene needs, and why
+  terrell explain street                           what will be seen, when, by which method, and why
   terrell animate gate -o gate.mp4                 flying through a gate
   terrell render gate --color doppler -o gate.exr  float channels, Doppler factor included
   terrell transform statue.glb --beta 0.9          its apparent shape, for other programs
@@ -53,6 +53,7 @@ enum Command {
     Locate(locate::Locate),
     Compare(Box<compare::Compare>),
     Chart(Box<chart::Chart>),
+    Explain(Box<explain::Explain>),
     Scenes(scenes::Scenes),
     Teach(teach::Teach),
     Completions(completions::Completions),
@@ -84,6 +85,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Locate(locate) => locate.run(),
         Command::Compare(compare) => compare.run(),
         Command::Chart(chart) => chart.run(),
+        Command::Explain(explain) => explain.run(),
         Command::Scenes(scenes) => scenes.run(),
         Command::Teach(teach) => teach.run(),
         Command::Completions(completions) => completions.run(),
@@ -111,4 +113,46 @@ fn error_mark() -> &'static str {
 fn is_colored(to: &impl IsTerminal) -> bool {
     let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
     !dumb && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty()) && to.is_terminal()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    /// Words as a shell makes them, up to where it is told of files and other programs.
+    fn words(line: &str) -> Vec<String> {
+        let mut words = vec![String::new()];
+        let mut quoted = false;
+        for c in line.chars() {
+            match c {
+                '"' => quoted = !quoted,
+                ' ' if !quoted => words.push(String::new()),
+                c => words.last_mut().unwrap().push(c),
+            }
+        }
+        words.into_iter().take_while(|word| word != "<" && word != ">").collect()
+    }
+
+    #[test]
+    fn every_help_has_examples_and_they_are_commands() {
+        let command = Cli::command();
+        for part in command.get_subcommands().chain([&command]) {
+            let name = part.get_name();
+            let help = part.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let examples = help.lines().filter_map(|line| line.strip_prefix("  terrell "));
+            // What is said of them begins after two spaces.
+            let examples: Vec<_> =
+                examples.filter_map(|line| line.split(['|', ';']).next()?.split("  ").next()).collect();
+            assert!(help.starts_with("Examples:") && !examples.is_empty(), "{name}: {help}");
+            for example in examples {
+                let words = words(&format!("terrell {}", example.trim_end()));
+                assert!(name == "terrell" || words[1] == name, "{name}: {words:?}");
+                let shielded = words.iter().map(|word| values::shield_negative(word.into()));
+                if let Err(e) = Cli::try_parse_from(shielded) {
+                    panic!("{words:?}\n{e}");
+                }
+            }
+        }
+    }
 }

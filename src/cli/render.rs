@@ -5,12 +5,16 @@ use super::look::{LookFlags, MomentFlags};
 use super::progress::progress_bar;
 use super::report::{ReportFlags, check_target};
 use super::summary;
+use super::values::vector;
 use clap::Args;
+use glam::DVec3;
 use indicatif::ProgressBar;
 use serde_json::json;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use terrell::color::Coloring;
+use terrell::detectors;
 use terrell::drawing::Shot;
 use terrell::film::{Film, HOLE};
 use terrell::light::Shading;
@@ -30,6 +34,8 @@ use terrell::tone::Development;
   terrell render statue.glb --beta 0.99 --size 1920x1080 --samples 9
   terrell render gate --camera panorama --size 2000x1000 --color doppler
   terrell render lattice --edges --axes --scale-bar --caption \"β = {beta}, γ = {gamma}\"
+  terrell render lattice --beta 0.99 --color doppler --detectors
+  terrell render cube --color geometry --detectors=2,1.5,-1
   terrell render shadow --explain
   terrell render street --when \"nearest tram\" -o street.exr --json street.json")]
 pub struct Render {
@@ -42,6 +48,10 @@ pub struct Render {
     look: LookFlags,
     #[command(flatten)]
     moment: MomentFlags,
+    /// Draw the apparent shapes themselves, as one solid thing, from another place: right, up and ahead of the camera, whose
+    /// frame's detectors have recorded them; without a place all of it is seen from the right, above and behind
+    #[arg(long, value_name = "RIGHT,UP,AHEAD", value_parser = vector, num_args = 0..=1, require_equals = true)]
+    detectors: Option<Option<DVec3>>,
     #[command(flatten)]
     drawing: DrawingFlags,
     #[command(flatten)]
@@ -54,13 +64,16 @@ impl Render {
     pub fn run(self) -> Result<(), Fault> {
         let start = Instant::now();
         let mut options = self.look.options()?;
-        let mut scene = self.scene()?;
+        let mut scene = self.look.open(&self.scene, &self.moment)?;
+        if let Some(from) = self.detectors {
+            scene = self.recorded(&scene, from, &mut options)?;
+        }
         let why = self.look.choose(&mut options, &scene)?;
         let camera = scene.camera()?;
         // Better known before the work than after.
         scene.eye(&camera)?;
         if self.explain.is_asked() {
-            return explain::tell(&scene, &[&camera], &options, why, &self.report);
+            return explain::tell(&scene, &[&camera], &options, why, None, &self.report);
         }
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
         Format::of(&output)?;
@@ -123,15 +136,20 @@ impl Render {
         self.report.finish(vec![picture], &scene.files, &summary)?;
         self.report.tell(&done.line(), &summary)
     }
+}
 
-    /// The scene, with what the flags say over what it says itself.
-    fn scene(&self) -> Result<Scene, Fault> {
-        let mut scene = self
-            .look
-            .scene
-            .open(&self.scene, self.look.scene.velocity.speed()?, |view| self.look.set_lens(view))?;
-        self.moment.set(&mut scene)?;
-        Ok(scene)
+impl Render {
+    /// The scene's apparent shapes, for a picture from aside.
+    fn recorded(&self, scene: &Scene, from: Option<DVec3>, options: &mut Options) -> Result<Scene, Fault> {
+        if scene.spacetime.is_curved() {
+            let why = "in curved spacetime a body can be seen in several places at once, so it has no one apparent shape";
+            return Err(format!("--detectors: {why}").into());
+        }
+        scene.check_spacetime()?;
+        let mut recorded = detectors::seen_from(scene, &scene.camera()?, from, options.coloring)?;
+        recorded.notes.extend(summary::shadow_note(scene, options.coloring));
+        options.coloring = Coloring::Geometry;
+        Ok(recorded)
     }
 }
 

@@ -167,10 +167,7 @@ pub fn dark_lights(to_lights: &[[u64; 2]], scene: &Scene, observer: &Tetrad) -> 
         let around = scene.body_around(light, observer);
         let why = match around {
             Some(body) => {
-                format!(
-                    "it is inside '{}', which lets no light out; {rays} rays to it are blocked",
-                    body.name
-                )
+                format!("it is inside '{}', which lets no light out", body.name)
             }
             None if *asked == 0 => "it shines from behind, or elsewhere".to_owned(),
             None => format!("all {rays} rays to it are blocked"),

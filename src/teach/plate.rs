@@ -1,12 +1,15 @@
 use crate::color::Coloring;
+use crate::detectors;
 use crate::exposure::Exposure;
 use crate::figure::Figure;
 use crate::film::Film;
+use crate::measure::SweepError;
 use crate::picture::{Movie, MovieError, MovieFormat, pixels_srgb, write_png_pixels};
 use crate::plan::{Method, cheapest};
 use crate::render::{Options, RenderError, render_again};
 use crate::scene::{AnimationError, Camera, LensError, NoSuchScene, Scene, SceneError, ViewError};
 use crate::tone::Tone;
+use crate::transform::TransformError;
 use std::fmt::{Debug, Formatter};
 use std::rc::Rc;
 use terrell_geodesic::{CelerityError, DistantCameraError, KerrError, TetradError};
@@ -125,6 +128,12 @@ pub enum TeachError {
     /// A picture that could not be written.
     #[error(transparent)]
     Io(#[from] std::io::Error),
+    /// Ways to draw that could not be compared.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    /// Shapes that could not be had.
+    #[error(transparent)]
+    Transform(#[from] TransformError),
     /// A page without room.
     #[error("a page of no size")]
     Empty,
@@ -203,6 +212,14 @@ impl Shot {
     /// The same with another coloring.
     pub fn colored(self, coloring: Coloring) -> Self {
         Self { coloring, ..self }
+    }
+
+    /// The shapes seen, as detectors of the camera's frame have them, from aside.
+    pub fn from_aside(mut self) -> Result<Self, TeachError> {
+        let camera = self.scene.camera()?;
+        self.scene = detectors::seen_from(&self.scene, &camera, None, self.coloring)?;
+        self.coloring = Coloring::Geometry;
+        Ok(self)
     }
 
     fn options(&self) -> Options {

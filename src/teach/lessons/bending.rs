@@ -58,6 +58,32 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         Plate::shot("without", "A globe and three cubes before a checkered sky.", shot(without)),
         Plate::shot("hole", "The same around a rotating black hole: the globe behind it is seen around it, twice; the sky is wrapped around.", shot(scene)),
     ]);
+    l.heading("Einstein’s ring");
+    l.text(
+        "What is exactly behind the hole has no reason to be seen on one side of it rather than on another: it is seen all around, as a ring. Far from the hole its radius is the angle \
+         √(4M d/(D(D + d))), D the way from the camera to the hole and d that from there to what is behind.",
+    );
+    let mut rows = Vec::new();
+    for distance in [1000.0, 100.0, 22.0f64] {
+        let name = |what: &str| format!("{what} from {distance} M, degrees");
+        let far = (2.0 / distance).sqrt();
+        rows.push([
+            super::whole(distance),
+            l.fixed(name("ring, traced,"), ring(&hole, distance)?.to_degrees(), 3),
+            l.fixed(name("ring, far away,"), far.to_degrees(), 3),
+        ]);
+    }
+    l.table(["D = d (M)", "traced (°)", "far away (°)"], rows);
+    let mut behind = builtin_scene("blackhole")?.scene();
+    behind.spacetime = crate::scene::Spacetime::Kerr(hole);
+    behind.bodies.retain(|body| body.name == "globe");
+    let camera = behind.view.event.position();
+    behind.bodies[0].motion = crate::relativity::Motion::at_rest(-0.7 * camera);
+    l.plates([Plate::shot(
+        "ring",
+        "The globe exactly behind a hole that does not rotate, 15 M beyond it: a ring, and within it another, thin one, of light that goes once around the back.",
+        shot(behind),
+    )]);
     l.attempt("terrell render blackhole", "the second picture, larger");
     l.attempt("terrell scenes blackhole > mine.toml", "a scene to change: mass, spin, camera");
     l.attempt("terrell chart --geodesics --quick -o rays", "what following rays costs, and how exact it is");
@@ -91,6 +117,31 @@ fn deflection(hole: &KerrSchild, b: f64) -> Result<f64, TeachError> {
         }
         _ => f64::INFINITY,
     })
+}
+
+/// The angle from the hole at which a static camera at a distance sees what is as far behind it.
+fn ring(hole: &KerrSchild, distance: f64) -> Result<f64, TeachError> {
+    let camera = DistantCamera::at_distance(*hole, std::f64::consts::FRAC_PI_2, distance)?;
+    let space = Curved::new(*hole).with(Accuracy::new(1e-10, 1e-4));
+    // How far behind the hole a ray of an impact parameter comes to the axis; ever farther with the parameter.
+    let crosses = |b: f64| -> Result<f64, TeachError> {
+        let (event, k) = camera.ray(b, 0.0)?;
+        for Segment { start, direction, length, .. } in space.ray(event, k) {
+            let (from, along) = (start.position(), direction.xyz());
+            let at = -from.y / along.y;
+            if at > 0.0 && at <= length && from.x + at * along.x < 0.0 {
+                return Ok(-(from.x + at * along.x));
+            }
+        }
+        Ok(f64::INFINITY)
+    };
+    let (mut low, mut high) = (27f64.sqrt() * 1.001, 3.0 * distance.sqrt() + 6.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if crosses(middle)? < distance { low = middle } else { high = middle }
+    }
+    // Of a static camera (J. L. Synge 1966).
+    Ok((low / distance * (1.0 - 2.0 / distance).sqrt()).asin())
 }
 
 /// The direction of rays of a camera far away.

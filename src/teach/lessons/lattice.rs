@@ -1,4 +1,5 @@
 use super::{passing, shipped};
+use crate::color::Coloring;
 use crate::teach::lecture::Lecture;
 use crate::teach::plate::{Plate, TeachError};
 use glam::DVec3;
@@ -25,6 +26,22 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         "All four are taken when the same ball would look to be at the same place. Orange rods stay straight and grow long where they come; green \
          and blue ones become hyperbolas. Balls keep round outlines, whatever the lattice does: see the lesson on spheres.",
     );
+    l.heading("From outside");
+    l.text(
+        "Imagine detectors all over the camera’s frame, each at rest, that record what passes them. Of every point they know how far away it is seen: as far as its light is \
+         old. So the apparent shape is a thing in space, which can be looked at from anywhere, like a statue. Here it is, from the right, above and behind; the yellow \
+         pyramid is the camera. Red is what is seen redder, blue bluer.",
+    );
+    let mut plates = Vec::new();
+    for (beta, name) in SPEEDS {
+        let shot = shipped("lattice", beta)?.colored(Coloring::Doppler).from_aside()?;
+        plates.push(Plate::shot(
+            &format!("outside{}", (100.0 * beta) as u32),
+            format!("{name}, from outside."),
+            shot,
+        ));
+    }
+    l.plates(plates);
     l.heading("Where the balls are seen");
     l.text(
         "Balls of one row along the line of flight, one length apart in their own frame; the row passes 1 beside you. Listed is where along the \
@@ -56,7 +73,10 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         "terrell render lattice --beta 0.99 --color geometry --camera fisheye --size 900x900",
         "all of it, ahead and behind",
     );
-    l.attempt("terrell render lattice --color geometry --edges --axes", "with edges and axes drawn on top");
+    l.attempt(
+        "terrell render lattice --beta 0.99 --color geometry --detectors=30,10,-20",
+        "the shape itself, from another place",
+    );
     l.attempt("terrell animate lattice --color geometry --beside-standard", "beside slow motion");
     let map = passing(0.6)?;
     let at = |x: f64| map.see(DVec3::new(x, 1.0, 0.0)).position.x;

@@ -12,7 +12,9 @@ mod rods;
 mod searchlight;
 mod seeing;
 mod shadows;
+mod speed;
 mod sphere;
+mod telescopes;
 
 use super::lecture::Lecture;
 use super::plate::{Shot, TeachError};
@@ -36,7 +38,7 @@ pub struct Lesson {
     make: fn() -> Result<Lecture, TeachError>,
 }
 
-static LESSONS: [Lesson; 13] = [
+static LESSONS: [Lesson; 15] = [
     Lesson {
         name: "seeing",
         title: "Seeing is not measuring",
@@ -120,6 +122,20 @@ static LESSONS: [Lesson; 13] = [
         about: "shadows that are late, seen twice, and faster than light",
         source: "The paper, section 2.2.4",
         make: shadows::lecture,
+    },
+    Lesson {
+        name: "speed",
+        title: "Speed against accuracy",
+        about: "what a picture costs, how far off it is, and where formulas fail",
+        source: "The paper, sections 2.2.4 and 4; measured here",
+        make: speed::lecture,
+    },
+    Lesson {
+        name: "telescopes",
+        title: "The telescope that would see it",
+        about: "why such pictures are computed, and what is seen of things that fast all the same",
+        source: "The paper, Table 1, worked out anew; J. A. Biretta et al., ApJ 520 (1999) 621",
+        make: telescopes::lecture,
     },
     Lesson {
         name: "bending",
