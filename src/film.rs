@@ -54,6 +54,13 @@ impl Samples {
     }
 }
 
+/// So many of one value, by all threads.
+fn cleared<T: Copy + Send + Sync>(values: &mut Vec<T>, count: usize, value: T) {
+    values.truncate(count);
+    values.par_chunks_mut(1 << 16).for_each(|values| values.fill(value));
+    values.resize(count, value);
+}
+
 /// Some rows of a film, to be filled.
 pub(crate) struct Rows<'a> {
     pub color: &'a mut [[f32; 3]],
@@ -98,15 +105,12 @@ impl Film {
     pub fn clear(&mut self, width: u32, height: u32) {
         (self.width, self.height) = (width, height);
         let pixels = width as usize * height as usize;
-        self.color.clear();
-        self.color.resize(pixels, [0.0; 3]);
+        cleared(&mut self.color, pixels, [0.0; 3]);
         for values in [&mut self.distance, &mut self.doppler] {
-            values.clear();
-            values.resize(pixels, 0.0);
+            cleared(values, pixels, 0.0);
         }
         for indices in [&mut self.body, &mut self.face] {
-            indices.clear();
-            indices.resize(pixels, NOTHING);
+            cleared(indices, pixels, NOTHING);
         }
     }
 

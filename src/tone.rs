@@ -2,6 +2,7 @@
 
 use crate::color::linear_of;
 use crate::spectrum::luminance;
+use glam::Vec3A;
 
 /// How light becomes a picture of values from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,7 +97,7 @@ impl Development {
             let [r, g, b] = within_gamut([light[0] * factor, light[1] * factor, light[2] * factor]);
             match tone {
                 Tone::Linear => [r, g, b],
-                Tone::Filmic => [filmic(r), filmic(g), filmic(b)],
+                Tone::Filmic => filmic(Vec3A::new(r, g, b)).to_array(),
                 Tone::Log => logarithmic([r, g, b]),
             }
         }
@@ -119,10 +120,10 @@ fn within_gamut(color: [f32; 3]) -> [f32; 3] {
 }
 
 #[inline]
-fn filmic(v: f32) -> f32 {
+fn filmic(v: Vec3A) -> Vec3A {
     // Far above, where squares would be too large, it is what it tends to.
-    let v = v.min(1e4);
-    (v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14)).clamp(0.0, 1.0)
+    let v = v.min(Vec3A::splat(1e4));
+    (v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14)).max(Vec3A::ZERO).min(Vec3A::ONE)
 }
 
 fn logarithmic(color: [f32; 3]) -> [f32; 3] {

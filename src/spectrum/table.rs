@@ -19,6 +19,21 @@ pub struct DopplerTable {
     error: f64,
 }
 
+/// Four nodes of a table times one colour.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near {
+    /// The number of the first.
+    low: usize,
+    colors: [Vec4; 4],
+}
+
+impl Default for Near {
+    /// None.
+    fn default() -> Self {
+        Self { low: usize::MAX, colors: [Vec4::ZERO; 4] }
+    }
+}
+
 /// How far |ln D| goes in any table: γ of a billion.
 const FARTHEST: f64 = 22.0;
 
@@ -155,34 +170,44 @@ impl DopplerTable {
         Self::of_nodes(self.grid(), &nodes, self.error)
     }
 
-    /// Weights of four nodes, and the first of them. Beyond its ends a table stays as it is there.
+    /// Weights of four nodes, and the number of the first. Beyond its ends a table stays as it is there.
     #[inline]
-    fn place(&self, ln_doppler: f64) -> ([f32; 4], &[Node]) {
+    fn place(&self, ln_doppler: f64) -> ([f32; 4], usize) {
         let last = (self.nodes.len() - 3) as f64;
         let place = (ln_doppler - self.start) * self.inverse_step;
         // NaN becomes the first.
         let within = place.max(0.0).min(last);
         let low = (within as usize).min(self.nodes.len() - 4);
-        (weights(within - low as f64), &self.nodes[low..low + 4])
+        (weights(within - low as f64), low)
     }
 
     /// The nine numbers at ln D: columns for red, green and blue.
     pub fn at(&self, ln_doppler: f64) -> [f32; 9] {
-        let (w, nodes) = self.place(ln_doppler);
+        let (w, low) = self.place(ln_doppler);
+        let nodes = &self.nodes[low..low + 4];
         std::array::from_fn(|k| nodes.iter().zip(w).map(|(node, w)| w * node[k / 3][k % 3]).sum())
     }
 
     /// The colour seen at ln D of a surface of the colour `own`.
     #[inline]
     pub fn color(&self, ln_doppler: f64, own: [f32; 3]) -> [f32; 3] {
-        let (w, nodes) = self.place(ln_doppler);
-        // Four at a time.
-        let mut sum = Vec4::ZERO;
-        for (node, w) in nodes.iter().zip(w) {
-            for (column, own) in node.iter().zip(own) {
-                sum += w * own * Vec4::from_array(*column);
-            }
+        self.color_near(ln_doppler, own, &mut Near::default())
+    }
+
+    /// The same, of a surface of one colour asked over and over: what is `near` is kept for the next time.
+    #[inline]
+    pub(crate) fn color_near(&self, ln_doppler: f64, own: [f32; 3], near: &mut Near) -> [f32; 3] {
+        let (w, low) = self.place(ln_doppler);
+        if near.low != low {
+            let nodes: &[Node; 4] = self.nodes[low..].first_chunk().unwrap_or(&[[[0.0; 4]; 3]; 4]);
+            let color = |[r, g, b]: &Node| {
+                let [r, g, b] = [r, g, b].map(|column| Vec4::from_array(*column));
+                r * own[0] + g * own[1] + b * own[2]
+            };
+            *near = Near { low, colors: [0, 1, 2, 3].map(|i| color(&nodes[i])) };
         }
+        let [a, b, c, d] = near.colors;
+        let sum = (a * w[0] + b * w[1]) + (c * w[2] + d * w[3]);
         [sum.x, sum.y, sum.z]
     }
 

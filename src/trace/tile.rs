@@ -394,7 +394,7 @@ impl Tile {
                 last = (sight.target, sight.leaf);
                 met = Some(Met::new(job.shading, target, sight.leaf));
             }
-            let Some(Met { facet, material, plain, glow }) = &met else { continue };
+            let Some(Met { facet, material, plain, glow }) = &mut met else { continue };
             let material = *material;
             let at = || sight.rest / sight.nearness;
             let doppler = sight.length / target.sky.boosted(sight.direction, sight.length).length;
@@ -419,7 +419,10 @@ impl Tile {
                     },
                 )
             };
-            let mut light = glow.map_or_else(shadowed, |glow| glow.radiance(doppler));
+            let mut light = match glow {
+                Some(glow) => glow.radiance(doppler),
+                None => shadowed(),
+            };
             if let Some(world) = job.world
                 && job.shading.is_lit(target.body, material)
             {
