@@ -15,8 +15,9 @@ pub const USUAL_SIDE: DVec3 = DVec3::new(1.0, 0.45, -0.3);
 ///
 /// Every point is where its light came from by the camera's reckoning: so far away as the light is old (Nollert et al. 2000,
 /// section 2.1.2). Who stands `from` there (right, up, ahead of the camera, in lengths of the scene) sees the shape itself, and
-/// no shift: colours are those that the camera sees, at its exposure. Without `from` all of it is seen from
-/// [`USUAL_SIDE`]. The lens is the camera's if that is a pinhole.
+/// no shift: colours are those that the camera sees, at the exposure `ev` (one that suits, if none is given), and shine by
+/// themselves, as it is not the apparent shape that light falls on. Without `from` all of it is seen from [`USUAL_SIDE`]. The
+/// field is the camera's if that is a pinhole.
 ///
 /// # Errors
 /// As [`transform`].
@@ -25,8 +26,9 @@ pub fn seen_from(
     camera: &Camera,
     from: Option<DVec3>,
     coloring: Coloring,
+    ev: Option<f32>,
 ) -> Result<Scene, TransformError> {
-    let options = Options { axes: Axes::Camera, coloring, ..Options::default() };
+    let options = Options { axes: Axes::Camera, coloring, ev, ..Options::default() };
     let (model, _) = transform(scene, camera, &[camera.observer], &[0.0], &options)?;
     let shapes: Vec<(String, Mesh)> = model
         .objects
@@ -92,6 +94,12 @@ fn still(name: &str, mesh: Mesh) -> Body {
 /// A surface at its only time.
 fn mesh(surface: Surface) -> Mesh {
     let Surface { material, triangles, uv, frames } = surface;
+    let material = Material {
+        surface: Shines::Luminous,
+        law: Default::default(),
+        gloss: Default::default(),
+        ..material
+    };
     let frame = frames.into_iter().next().unwrap_or_default();
     let paint =
         if frame.colors.is_empty() { Paint::Uniform([1.0; 3]) } else { Paint::Vertices(frame.colors) };
@@ -133,7 +141,7 @@ mod tests {
         let scene = builtin_scene("cube").unwrap().scene();
         let camera = scene.camera().unwrap();
         let map = ApparentMap::new(&scene.bodies[0].motion, &camera.observer);
-        let still = seen_from(&scene, &camera, None, Coloring::Geometry).unwrap();
+        let still = seen_from(&scene, &camera, None, Coloring::Geometry, None).unwrap();
         let (low, high) = scene.bodies[0].mesh.bounds().unwrap();
         let mut count = 0;
         for body in still.bodies.iter().filter(|body| body.name == "cube") {
@@ -165,7 +173,7 @@ mod tests {
                 (scene.view.projection, scene.view.fov_deg) = (projection, None);
                 let camera = scene.camera().unwrap();
                 let at = Some(DVec3::new(3.0, 2.0, -8.0));
-                let still = seen_from(&scene, &camera, at, Coloring::Doppler).unwrap();
+                let still = seen_from(&scene, &camera, at, Coloring::Doppler, None).unwrap();
                 assert_eq!(still.view.event.position(), DVec3::new(3.0, 2.0, 8.0));
                 assert!(still.camera().is_ok() && still.bodies.len() > scene.bodies.len());
             }

@@ -181,7 +181,12 @@ impl Display for Explanation {
         }
         let verdict = |verdict: &Verdict, chosen: bool| {
             let mark = if chosen { "  > " } else { "    " };
-            let not = if verdict.is_right { "" } else { "no: " };
+            let not = match (verdict.is_right, chosen) {
+                (true, _) => "",
+                // The least wrong, where none is right.
+                (false, true) => "yet: ",
+                (false, false) => "no: ",
+            };
             format!("{mark}{:<12} {not}{}", verdict.name, verdict.reason)
         };
         writeln!(f, "methods")?;

@@ -34,6 +34,7 @@
 //! | section 2.2.4 | [`trace::Tracer`] | shadows and reflections by rays, with light travel time |
 //! | section 2.1.2 | [`relativity::ApparentMap::unsee`], [`detectors::seen_from`] | from pictures back to shapes; these from aside |
 //! | beyond it | [`trace::Tracer::exact`] | triangles tested pixel by pixel, nothing cut |
+//! | Eq. 6 | [`geodesic::BySecondDerivative`], [`geodesic::ByMetric`] | geodesics, by their second derivative or by the metric |
 //! | Fig. 7 | [`geodesic::Spacetime`] | what hands straight segments to whoever looks |
 //!
 //! # Conventions

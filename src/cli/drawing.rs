@@ -1,10 +1,11 @@
 use super::Fault;
 use clap::{Args, ValueEnum};
 use std::path::Path;
+use terrell::color::Coloring;
 use terrell::drawing::{Caption, Edges, Overlay, OverlayOptions, Shot};
 use terrell::film::Film;
 use terrell::picture::{self, Format, Pending, WriteError};
-use terrell::scene::Scene;
+use terrell::scene::{Camera, Scene};
 
 /// What is drawn on top of a picture.
 #[derive(Args)]
@@ -44,6 +45,18 @@ enum EdgesFlag {
 }
 
 impl DrawingFlags {
+    /// Puts a scene's numbers into the caption, for a picture of its shapes in the colours they are seen in.
+    pub fn fill_caption(&mut self, scene: &Scene, camera: &Camera, coloring: Coloring) -> Result<(), Fault> {
+        if self.legend && coloring.is_beamed() {
+            return Err("--legend: shapes seen from aside have colours that were exposed before; leave it out, or use --color doppler".into());
+        }
+        if !self.caption.is_empty() {
+            let text = Caption::parse(&self.caption.join("\n"))?.text(scene, camera);
+            self.caption = vec![text.replace('{', "{{").replace('}', "}}")];
+        }
+        Ok(())
+    }
+
     /// What to draw on pictures of a scene; none if nothing.
     pub fn overlay(&self, scene: &Scene) -> Result<Option<Overlay>, Fault> {
         let flat =

@@ -101,7 +101,8 @@ fn seen_by(outlook: &Outlook) -> Value {
     let bodies = outlook.prospects.iter().map(|body| {
         json!({
             "name": body.name,
-            "gamma": body.gamma,
+            "gamma": body.celerity.map(|u| u.hypot(1.0)),
+            "celerity": body.celerity,
             "part_of_picture": body.part,
             "doppler": body.doppler,
             "distance": body.distance,

@@ -74,9 +74,9 @@ pub struct LookFlags {
     /// Which chance decides where reflected rays go
     #[arg(long, value_name = "N", default_value = "0")]
     seed: u64,
-    /// What a pixel shows
-    #[arg(long, value_enum, default_value = "spectral")]
-    pub color: ColorFlag,
+    /// What a pixel shows [default: spectral; geometry with --detectors]
+    #[arg(long, value_enum)]
+    color: Option<ColorFlag>,
     /// Where the Doppler factor is worked out
     #[arg(long, value_name = "WHERE", value_enum, default_value = "pixel")]
     doppler: DopplerFlag,
@@ -238,7 +238,7 @@ impl LookFlags {
         Ok(Options {
             tolerance,
             samples: self.samples.unwrap_or(1),
-            coloring: self.color.coloring(),
+            coloring: self.color.map_or(usual.coloring, ColorFlag::coloring),
             doppler_at: match self.doppler {
                 DopplerFlag::Pixel => DopplerAt::Pixel,
                 DopplerFlag::Vertex => DopplerAt::Vertex,
@@ -315,6 +315,14 @@ impl LookFlags {
         options.paths = Paths { bounces: self.bounces.unwrap_or(usual), seed: self.seed };
         let usual = if options.paths.bounces > 0 { USUAL_PATHS } else { 1 };
         options.samples = self.samples.unwrap_or(usual);
+    }
+
+    /// For what is drawn by a lens and colours of its own: the colouring, that if none is asked for, and no lens.
+    pub fn coloring_of_shapes(&self, usual: Coloring) -> Result<Coloring, Fault> {
+        if self.camera.is_some() {
+            return Err("--detectors draws shapes by a pinhole; leave out --camera".into());
+        }
+        Ok(self.color.map_or(usual, ColorFlag::coloring))
     }
 
     /// For what draws by several methods: that none of them is asked for.

@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 use terrell::color::Coloring;
 use terrell::detectors;
 use terrell::drawing::Shot;
+use terrell::exposure::Exposure;
 use terrell::film::{Film, HOLE};
 use terrell::light::Shading;
 use terrell::picture::{self, Format};
@@ -61,12 +62,17 @@ pub struct Render {
 }
 
 impl Render {
-    pub fn run(self) -> Result<(), Fault> {
+    pub fn run(mut self) -> Result<(), Fault> {
         let start = Instant::now();
         let mut options = self.look.options()?;
         let mut scene = self.look.open(&self.scene, &self.moment)?;
+        // What its colours stand for, where the picture is of shapes in the colours they are seen in.
+        let mut shown = None;
         if let Some(from) = self.detectors {
-            scene = self.recorded(&scene, from, &mut options)?;
+            let coloring = self.look.coloring_of_shapes(Coloring::Geometry)?;
+            scene = self.recorded(&scene, from, coloring)?;
+            options.coloring = Coloring::Geometry;
+            shown = Some(coloring);
         }
         let why = self.look.choose(&mut options, &scene)?;
         let camera = scene.camera()?;
@@ -103,15 +109,26 @@ impl Render {
         }
         let is_dark_told = !dark.is_empty();
         scene.notes.extend(dark.into_iter().map(|light| light.told));
-        let exposure = self.look.develop.exposure(coloring, &scene);
+        let exposure = match shown {
+            // What is asked for has been done to the light itself.
+            Some(_) => Exposure::Fixed(0.0),
+            None => self.look.develop.exposure(coloring, &scene),
+        };
         let tone = self.look.develop.tone(coloring);
         let development = exposure.of_picture(tone, &scene, &camera, &options, &film)?;
+        options.coloring = shown.unwrap_or(coloring);
         let before_writing = start.elapsed();
         let picture = match &overlay {
             Some(overlay) => {
                 let tolerance = options.tolerance;
-                let shot =
-                    Shot { scene: &scene, camera: &camera, film: &film, tolerance, coloring, development };
+                let shot = Shot {
+                    scene: &scene,
+                    camera: &camera,
+                    film: &film,
+                    tolerance,
+                    coloring: options.coloring,
+                    development,
+                };
                 let (picture, notes) = drawing::prepare(overlay, &shot, &output)?;
                 scene.notes.extend(notes);
                 picture
@@ -139,16 +156,31 @@ impl Render {
 }
 
 impl Render {
-    /// The scene's apparent shapes, for a picture from aside.
-    fn recorded(&self, scene: &Scene, from: Option<DVec3>, options: &mut Options) -> Result<Scene, Fault> {
+    /// The scene's apparent shapes, for a picture from aside; a caption tells of the scene itself.
+    fn recorded(&mut self, scene: &Scene, from: Option<DVec3>, coloring: Coloring) -> Result<Scene, Fault> {
         if scene.spacetime.is_curved() {
             let why = "in curved spacetime a body can be seen in several places at once, so it has no one apparent shape";
             return Err(format!("--detectors: {why}").into());
         }
         scene.check_spacetime()?;
-        let mut recorded = detectors::seen_from(scene, &scene.camera()?, from, options.coloring)?;
-        recorded.notes.extend(summary::shadow_note(scene, options.coloring));
-        options.coloring = Coloring::Geometry;
+        let camera = scene.camera()?;
+        self.drawing.fill_caption(scene, &camera, coloring)?;
+        let ev = match self.look.develop.exposure(coloring, scene) {
+            Exposure::Fixed(ev) if coloring.is_beamed() => Some(ev),
+            _ => None,
+        };
+        let mut recorded = detectors::seen_from(scene, &camera, from, coloring, ev)?;
+        let bodies = summary::bodies_in_words(&summary::gammas(scene, &camera));
+        let [x, y, z] = recorded.view.event.position().to_array();
+        recorded.notes.push(format!(
+            "apparent shapes of {bodies}, as detectors of the camera's frame have them, seen from {x:.4} right, {y:.4} up, {:.4} ahead of it",
+            -z
+        ));
+        if !scene.lights.is_empty() && coloring == Coloring::Geometry {
+            recorded.notes.push("shapes are in their surfaces' own colours, unlit".into());
+        } else {
+            recorded.notes.extend(summary::shadow_note(scene, coloring));
+        }
         Ok(recorded)
     }
 }

@@ -6,8 +6,9 @@ use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use terminal_size::terminal_size;
 use terrell::picture::{self, Pending};
-use terrell::teach::{Drawn, Kind, Lecture, Lesson, answer, index_page, lesson, lessons, page, told};
+use terrell::teach::{Drawn, Kind, Lecture, Lesson, answer, index_page, lesson, lessons, listed, page, told};
 
 /// Lessons on what relativistic motion looks like, with numbers, pictures and films worked out on the spot
 ///
@@ -54,7 +55,12 @@ impl Teach {
             Some(name) => vec![lesson(name)?],
             None if self.all => lessons().iter().collect(),
             None if self.output.is_some() || self.answer => {
-                return Err("which lesson? Name one, or ask for --all".into());
+                let names: Vec<_> = lessons().iter().map(|lesson| lesson.name).collect();
+                return Err(format!(
+                    "which lesson? Name one, or ask for --all; there is {}",
+                    names.join(", ")
+                )
+                .into());
             }
             None => return self.list(),
         };
@@ -96,10 +102,7 @@ impl Teach {
     }
 
     fn list(&self) -> Result<(), Fault> {
-        let mut said = String::new();
-        for lesson in lessons() {
-            let _ = writeln!(said, "{:<12}{}\n{:<12}{}", lesson.name, lesson.title, "", lesson.about);
-        }
+        let said = listed(lessons(), width());
         let told: Vec<Value> =
             lessons().iter().map(|l| json!({ "name": l.name, "title": l.title, "about": l.about })).collect();
         let summary = json!({ "terrell": env!("CARGO_PKG_VERSION"), "lessons": told });
@@ -197,6 +200,7 @@ fn summary(lectures: &[(&Lesson, Lecture)], files: &[PathBuf]) -> Value {
 
 /// Letters in a line that reads well.
 fn width() -> usize {
-    let columns = std::env::var("COLUMNS").ok().and_then(|text| text.parse().ok());
-    columns.unwrap_or(84).clamp(40, 100)
+    let asked = std::env::var("COLUMNS").ok().and_then(|text| text.parse().ok());
+    let columns = asked.or_else(|| terminal_size().map(|(width, _)| width.0.into()));
+    columns.unwrap_or(80).clamp(40, 100)
 }

@@ -132,14 +132,17 @@ fn write_plate(to: &mut String, plate: &Plate, files: &[Drawn]) {
     to.push_str("<figure>");
     if let Some(drawn) = files.first() {
         match drawn.kind {
-            Kind::Mp4 => push(
-                to,
-                format_args!(
-                    "<video controls loop muted playsinline preload=\"metadata\" aria-label=\"{}\" src=\"{}\"></video>",
-                    escaped(&plain),
-                    data(drawn)
-                ),
-            ),
+            Kind::Mp4 => {
+                let poster = files.iter().find(|file| file.kind == Kind::Png).map(data).unwrap_or_default();
+                push(
+                    to,
+                    format_args!(
+                        "<video controls loop muted playsinline preload=\"metadata\" poster=\"{poster}\" aria-label=\"{}\" src=\"{}\"></video>",
+                        escaped(&plain),
+                        data(drawn)
+                    ),
+                );
+            }
             Kind::Png | Kind::Svg => {
                 push(to, format_args!("<img alt=\"{}\" src=\"{}\">", escaped(&plain), data(drawn)));
             }

@@ -15,4 +15,4 @@ pub use html::{index_page, page};
 pub use lecture::{Lecture, Number, Part, Question, Table, Try};
 pub use lessons::{Lesson, NoSuchLesson, lesson, lessons};
 pub use plate::{Drawn, Kind, Plate, Reel, Shot, TeachError, What};
-pub use told::{answer, told};
+pub use told::{answer, listed, told};

@@ -187,7 +187,10 @@ impl Plate {
                     Drawn { kind: Kind::Png, bytes },
                 ]
             }
-            What::Reel(reel) => vec![Drawn { kind: Kind::Mp4, bytes: reel.film()? }],
+            What::Reel(reel) => {
+                let poster = (reel.open)()?(reel.frames / 2)?;
+                vec![Drawn { kind: Kind::Mp4, bytes: reel.film()? }, png(poster)?]
+            }
         })
     }
 }
@@ -217,7 +220,7 @@ impl Shot {
     /// The shapes seen, as detectors of the camera's frame have them, from aside.
     pub fn from_aside(mut self) -> Result<Self, TeachError> {
         let camera = self.scene.camera()?;
-        self.scene = detectors::seen_from(&self.scene, &camera, None, self.coloring)?;
+        self.scene = detectors::seen_from(&self.scene, &camera, None, self.coloring, None)?;
         self.coloring = Coloring::Geometry;
         Ok(self)
     }

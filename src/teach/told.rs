@@ -31,6 +31,16 @@ pub fn told(lesson: &Lesson, lecture: &Lecture, width: usize, colored: bool, fol
         }
     }
     text.push_str(&format!("\n{}\n", style.bold("Try")));
+    if folder.is_none() && lecture.all_plates().next().is_some() {
+        let command = format!("terrell teach {} --html -o {0}", lesson.name);
+        text.push_str(&format!("  {}\n", style.code(&command)));
+        style.paragraph(
+            &mut text,
+            "the pictures, plots and films that are named above, and a page with them",
+            width,
+            ["      ", "      "],
+        );
+    }
     for attempt in &lecture.tries {
         text.push_str(&format!("  {}\n", style.code(&attempt.command)));
         style.paragraph(&mut text, &attempt.shows, width, ["      ", "      "]);
@@ -38,6 +48,18 @@ pub fn told(lesson: &Lesson, lecture: &Lecture, width: usize, colored: bool, fol
     text.push_str(&format!("\n{}\n", style.bold("A question")));
     style.paragraph(&mut text, &lecture.question.text, width, ["", ""]);
     text.push_str(&format!("  {}\n", style.code(&format!("terrell teach {} --answer", lesson.name))));
+    text
+}
+
+/// What lessons there are, in lines up to so many letters wide.
+pub fn listed(lessons: &[Lesson], width: usize) -> String {
+    let style = Style { colored: false };
+    let mut text = String::new();
+    let room = " ".repeat(12);
+    for Lesson { name, title, about, .. } in lessons {
+        style.paragraph(&mut text, title, width, [&format!("{name:<12}"), &room]);
+        style.paragraph(&mut text, about, width, [&room, &room]);
+    }
     text
 }
 
