@@ -85,6 +85,18 @@ fn rods() {
         last = Some(pieces as u32);
         expected.push(exact(name, pieces));
     }
+    // All five rods come to the line of flight within each panel.
+    let plate = lecture.all_plates().find(|plate| plate.name == "hyperbolas").unwrap();
+    let What::Figure(figure) = &plate.what else { panic!("no figure") };
+    for (panel, beta) in figure.rows.iter().flatten().zip([0.0, 0.5, 0.9, 0.99f64]) {
+        let [left, right] = panel.x.range.unwrap();
+        for x in [-4.0, -2.0, 0.0, 2.0, 4.0f64] {
+            let seen = gamma(beta) * (x - beta * x.abs());
+            let is_it = |p: &terrell::figure::Point| p.y == 0.0 && (p.x - seen).abs() < 1e-9;
+            assert!(left < seen && seen < right, "{beta} {x}");
+            assert!(panel.series.iter().any(|series| series.points.iter().any(is_it)), "{beta} {x}");
+        }
+    }
     tells("rods", &expected);
 }
 
@@ -92,7 +104,11 @@ fn rods() {
 fn the_lattice() {
     let mut expected = vec![
         exact("first ball that is seen behind, 0.99c", 0.99 * gamma(0.99)),
+        // That is behind the last of them, and three are at 1, 2 and 4.
+        exact("balls that are seen coming, 0.99c", 7.0),
+        exact("balls that are past", 3.0),
         exact("answer: ball that is abreast at 0.6c", 0.0),
+        exact("answer: x′ of that ball", 0.75),
     ];
     for beta in [0.5, 0.9, 0.99] {
         for x in [-4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0f64] {
@@ -112,18 +128,31 @@ fn the_cube() {
         expected.push((format!("back at {beta}"), beta, 1e-3));
         // Two digits are given, and perspective is a thousandth of a radian.
         expected.push((format!("turn at {beta}, degrees"), turn, 1e-3));
+        let sine = beta * gamma(beta);
+        expected.push(exact(format!("arcsin of {beta}, degrees"), sine.atan().to_degrees()));
     }
     expected.push(("answer: near side at 0.8c".into(), 0.6, 1e-3));
     expected.push(("answer: back at 0.8c".into(), 0.8, 1e-3));
-    let lecture = lesson("cube").unwrap().lecture().unwrap();
+    expected.push(exact("answer: arcsin of 0.8, degrees", (4.0f64 / 3.0).atan().to_degrees()));
     for beta in [0.5, 0.9, 0.99] {
-        let misfit = |distance: f64| lecture.number(&format!("misfit at {distance} and {beta}")).unwrap();
-        // As one over the distance, where that is large.
-        assert!((misfit(30.0) / misfit(100.0) / (100.0 / 30.0) - 1.0).abs() < 0.05, "{beta}");
+        let mut last = 0.0;
         for distance in [100.0, 30.0, 10.0, 3.0, 1.5] {
-            // Of two shapes within an edge length of a middle that far away.
-            assert!(misfit(distance) < 2.0 / distance, "{beta} {distance}");
-            expected.push(exact(format!("misfit at {distance} and {beta}"), misfit(distance)));
+            let mut worst = 0f64;
+            for corner in 0..8 {
+                let [x, y, z] = [1, 2, 4].map(|bit| if corner & bit == 0 { -0.5 } else { 0.5f64 });
+                // Eq. 1, and the cube turned by the angle; both in a picture at the distance of their middle.
+                let (along, away) = (gamma(beta) * beta * distance + x, distance + y);
+                let seen = gamma(beta) * (along - beta * (along * along + away * away + z * z).sqrt());
+                let (sine, cosine) = beta.asin().sin_cos();
+                let (turned, deep) = (cosine * x - sine * y, distance + sine * x + cosine * y);
+                let apart = [seen / away - turned / deep, z / away - z / deep];
+                worst = worst.max(distance * apart[0].hypot(apart[1]));
+            }
+            // It grows as they come nearer.
+            assert!(worst > last, "{beta} {distance}");
+            last = worst;
+            // What is seen loses a few digits far away.
+            expected.push((format!("misfit at {distance} and {beta}"), worst, 1e-10));
         }
     }
     tells("cube", &expected);
@@ -134,6 +163,9 @@ fn the_gate() {
     let mut expected = vec![
         exact("ahead if nearer behind than, per metre aside", 0.99 * gamma(0.99)),
         exact("answer: beside at 0.6c, degrees", 0.6f64.acos().to_degrees()),
+        exact("further on than within the gate, metres", 12.0),
+        exact("looking back, past the gate by, metres", 340.0),
+        exact("looking back, the gate looks to be at, metres", 340.0 / ahead(0.99)),
     ];
     for (name, x) in [
         ("10 m ahead, 3 m aside", 10.0),
@@ -196,6 +228,8 @@ fn the_searchlight() {
         // The paper's own figure.
         exact("coming over going at 0.6c, third power", 64.0),
         exact("octaves between coming and going at 0.9c, D⁴", 8.0 * ahead(0.9).log2()),
+        exact("sent backward over forward at 0.3, D³", (7.0f64 / 13.0).powi(3)),
+        exact("arriving from going over coming at 0.3, D⁴", (7.0f64 / 13.0).powi(4)),
         exact("answer: coming over going at 0.8c, bolometric", 6561.0),
     ];
     for beta in [0.3, 0.6, 0.9, 0.99] {
@@ -295,6 +329,39 @@ fn fields_of_view() {
 fn lights() {
     let mut expected =
         vec![exact("answer: light from the side at 0.8c, degrees", 0.8f64.acos().to_degrees())];
+    // D⁴ over the directions of the ball's frame, from cosines of β to 1, as a part of all.
+    let share = {
+        let cubed = |cosine: f64| (1.0 - 0.99 * cosine).powi(-3);
+        (cubed(1.0) - cubed(0.99)) / (cubed(1.0) - cubed(-1.0))
+    };
+    expected.push((
+        "energy of starlight from within that at 0.99, percent".into(),
+        100.0 * share,
+        // 1 − β loses digits.
+        1e-11,
+    ));
+    // The fly-through table of J. Walker's C-ship, as it is printed.
+    let lecture = lesson("lights").unwrap().lecture().unwrap();
+    for (short, beta, angle, d) in [
+        ("0.2805", 0.28047668, 34.5, 1.25),
+        ("0.6986", 0.69861917, 19.8, 2.09),
+        ("0.9652", 0.96523621, 6.31, 6.44),
+        ("0.9996", 0.9996484, 0.629, 64.37f64),
+    ] {
+        let names = ["light from 45°", "D of it"].map(|what| format!("C-ship: {what} at {short}"));
+        let [told, shift] = [format!("{}, degrees", names[0]), names[1].clone()];
+        for (name, printed, half) in
+            [(&told, angle, if angle > 10.0 { 0.05 } else { 0.005 }), (&shift, d, 0.005f64)]
+        {
+            assert!((lecture.number(name).unwrap() - printed).abs() <= half, "{name}");
+        }
+        assert!((lecture.number(&told).unwrap() - angle).abs() < 1e-3 || angle > 1.0);
+        // Half of the angle has a tangent that is divided by the shift of what is straight ahead.
+        let half = (22.5f64.to_radians().tan() / ahead(beta)).atan();
+        expected.push((told, 2.0 * half.to_degrees(), 1e-11));
+        expected.push((shift, gamma(beta) * (1.0 + beta * 0.5f64.sqrt()), ROUNDING));
+        expected.push(exact(format!("C-ship: 1/γ at {short}"), 1.0 / gamma(beta)));
+    }
     for beta in [0.5, 0.9, 0.99] {
         for degrees in [45.0, 90.0, 135.0f64] {
             let cosine = degrees.to_radians().cos();
@@ -474,6 +541,30 @@ fn bending() {
     assert!((5.0..15.0).contains(&(fine / coarse)), "{coarse} {fine}");
     expected.push(exact("pieces to 0.1 M", coarse));
     expected.push(exact("pieces to 0.001 M", fine));
+    // The figure shows as many, whose ends are on the ray and whose middles are nearly.
+    let plate = lecture.all_plates().find(|plate| plate.name == "segments").unwrap();
+    let What::Figure(figure) = &plate.what else { panic!("no figure") };
+    let series = &figure.rows[0][0].series;
+    let ends = |marked: bool| -> Vec<[f64; 2]> {
+        let named = series.iter().find(|s| s.marked == marked && !s.name.is_empty()).unwrap();
+        named.points.iter().map(|p| [p.x, p.y]).collect()
+    };
+    let (pieces, ray) = (ends(true), ends(false));
+    assert!(pieces.len() - 1 == coarse as usize && ray.len() - 1 == fine as usize);
+    let off = |[x, y]: [f64; 2]| {
+        let to = |pair: &[[f64; 2]]| {
+            let ([a, b], [c, d]) = (pair[0], [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]]);
+            let at = (((x - a) * c + (y - b) * d) / (c * c + d * d)).clamp(0.0, 1.0);
+            (a + at * c - x).hypot(b + at * d - y)
+        };
+        ray.windows(2).map(to).fold(f64::INFINITY, f64::min)
+    };
+    let near = |p: &[f64; 2]| p[0].hypot(p[1]) < 30.0;
+    assert!(pieces.iter().filter(|p| near(p)).all(|p| off(*p) < 0.002));
+    let middles = pieces.windows(2).filter(|pair| pair.iter().all(near));
+    let most =
+        middles.map(|p| off([0.5 * (p[0][0] + p[1][0]), 0.5 * (p[0][1] + p[1][1])])).fold(0.0, f64::max);
+    assert!((0.03..0.102).contains(&most), "{most}");
     tells("bending", &expected);
 }
 

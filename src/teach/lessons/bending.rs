@@ -13,9 +13,10 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
          followed, and a tracer need not know of curvature. The paper’s idea (Section 3.4): whatever knows the spacetime hands the tracer short straight pieces.",
     );
     let hole = KerrSchild::schwarzschild(1.0)?;
+    let critical = l.fixed("critical b", 27f64.sqrt(), 4);
     l.plates([Plate::figure(
         "rays",
-        "Rays past a black hole of mass 1 (grey: its horizon at 2; dashed: light can circle at 3), from the right. Those that pass nearer than 5.196 end in it.",
+        format!("Rays past a black hole of mass 1 (black: its horizon at 2; dashed: light can circle at 3), from the right. Those that would pass nearer than {critical} end in it."),
         rays(&hole)?,
     )]);
     l.heading("How much");
@@ -35,16 +36,19 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         ]);
     }
     l.table(["b/M", "traced (°)", "closed form (°)", "4M/b (°)"], rows);
-    let critical = l.fixed("critical b", 27f64.sqrt(), 4);
-    let count = |tolerance: f64| pieces(&hole, tolerance);
-    let (coarse, fine) = (
-        l.fixed("pieces to 0.1 M", count(0.1)? as f64, 0),
-        l.fixed("pieces to 0.001 M", count(0.001)? as f64, 0),
-    );
+    // Ends are one more than pieces.
+    let count = |sagitta: f64| Ok::<_, TeachError>((chords(&hole, sagitta)?.len() - 1) as f64);
+    let (coarse, fine) =
+        (l.fixed("pieces to 0.1 M", count(0.1)?, 0), l.fixed("pieces to 0.001 M", count(0.001)?, 0));
     l.text(format!(
         "Rays with b below 3√3 M = {critical} M are caught: so large is the black disc that is seen. The ray with b = 6 M, cut so that its pieces are nowhere further than 0.1 M from \
          it, takes {coarse}; to 0.001 M {fine}."
     ));
+    l.plates([Plate::figure(
+        "segments",
+        format!("That ray near the hole (black: its horizon), from the right: pieces to 0.1 M, {coarse} with those farther off, a dot where one ends and the next begins; dashed: those to 0.001 M, which look smooth. Where it is bent most, pieces are shortest."),
+        segments(&hole)?,
+    )]);
     l.heading("What it looks like");
     let scene = builtin_scene("blackhole")?.scene();
     let mut without = scene.clone();
@@ -81,7 +85,7 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     behind.bodies[0].motion = crate::relativity::Motion::at_rest(-0.7 * camera);
     l.plates([Plate::shot(
         "ring",
-        "The globe exactly behind a hole that does not rotate, 15 M beyond it: a ring, and within it another, thin one, of light that goes once around the back.",
+        "The globe exactly behind a hole that does not rotate, 15 M beyond it: a ring, and within it another, thin one, of light that goes once around the hole.",
         shot(behind),
     )]);
     l.attempt("terrell render blackhole", "the second picture, larger");
@@ -150,25 +154,53 @@ fn far_direction(camera: &DistantCamera) -> Result<glam::DVec3, TeachError> {
     Ok(k.xyz().normalize())
 }
 
-/// Into how many pieces the ray at 6 M is cut.
-fn pieces(hole: &KerrSchild, sagitta: f64) -> Result<usize, TeachError> {
+/// The ends of the pieces into which the ray at 6 M is cut; the last leads to the sky, and is cut off.
+fn chords(hole: &KerrSchild, sagitta: f64) -> Result<Vec<[f64; 2]>, TeachError> {
     let (event, k) = DistantCamera::at_distance(*hole, std::f64::consts::FRAC_PI_2, 100.0)?.ray(6.0, 0.0)?;
-    Ok(Curved::new(*hole).with(Accuracy::new(1e-9, sagitta)).ray(event, k).count())
+    let (mut ends, mut last) = (Vec::new(), None);
+    for Segment { start, direction, length, .. } in
+        Curved::new(*hole).with(Accuracy::new(1e-9, sagitta)).ray(event, k)
+    {
+        let p = start.position();
+        ends.push([p.x, p.y]);
+        let end = p + direction.xyz() * length.min(60.0);
+        last = Some([end.x, end.y]);
+    }
+    ends.extend(last);
+    Ok(ends)
+}
+
+/// Points of a circle around the hole.
+fn circle(radius: f64) -> impl Iterator<Item = [f64; 2]> {
+    (0..=180).map(move |i| {
+        let (sine, cosine) = (f64::from(i) * 2.0).to_radians().sin_cos();
+        [radius * cosine, radius * sine]
+    })
+}
+
+/// Of one ray.
+fn segments(hole: &KerrSchild) -> Result<Figure, TeachError> {
+    let pieces = Series {
+        marked: true,
+        ink: Some([20, 80, 160]),
+        ..Series::line("pieces to 0.1 M", chords(hole, 0.1)?)
+    };
+    let fine = Series::line("to 0.001 M", chords(hole, 0.001)?);
+    let fine = Series { stroke: Stroke::Dashed, ink: Some([190, 60, 30]), ..fine };
+    let horizon = Series { ink: Some([30; 3]), ..Series::line("", circle(hole.horizon())) };
+    let panel = Panel {
+        x: Axis::linear("x/M").from_to(-12.0, 12.0),
+        y: Axis::linear("y/M").from_to(-9.0, 9.0),
+        series: vec![horizon, pieces, fine],
+        ..Panel::default()
+    };
+    Ok(Figure { rows: vec![vec![panel]], panel_size: [560.0, 420.0], ..Figure::default() })
 }
 
 fn rays(hole: &KerrSchild) -> Result<Figure, TeachError> {
     let camera = DistantCamera::at_distance(*hole, std::f64::consts::FRAC_PI_2, 40.0)?;
     let space = Curved::new(*hole).with(Accuracy::new(1e-8, 0.01));
-    let circle = |radius: f64| {
-        (0..=180).map(move |i| {
-            let (sine, cosine) = (f64::from(i) * 2.0).to_radians().sin_cos();
-            [radius * cosine, radius * sine]
-        })
-    };
-    let mut series = vec![
-        Series { ink: Some([120; 3]), ..Series::line("", circle(2.0)) },
-        Series { ink: Some([150; 3]), stroke: Stroke::Dashed, ..Series::line("", circle(3.0)) },
-    ];
+    let mut series = Vec::new();
     for b in [-12.0, -9.0, -7.0, -6.0, -5.3, -4.0, -2.0, 0.0, 2.0, 4.0, 5.3, 6.0, 7.0, 9.0, 12.0] {
         let (event, k) = camera.ray(b, 0.0)?;
         let mut points = Vec::new();
@@ -180,6 +212,10 @@ fn rays(hole: &KerrSchild) -> Result<Figure, TeachError> {
         }
         let ink = if f64::abs(b) < 27f64.sqrt() { [190, 60, 30] } else { [20, 80, 160] };
         series.push(Series { ink: Some(ink), ..Series::line("", points) });
+    }
+    // Above the rays.
+    for (radius, stroke) in [(hole.horizon(), Stroke::Line), (3.0, Stroke::Dashed)] {
+        series.push(Series { ink: Some([0; 3]), stroke, ..Series::line("", circle(radius)) });
     }
     let panel = Panel {
         x: Axis::linear("x/M").from_to(-20.0, 20.0),

@@ -47,7 +47,10 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
          things are shifted to the red, although they are still coming.",
         angles()?,
     )]);
-    l.text("Things can come closer and yet be red: D = 1 is not at 90° but ahead of it.");
+    l.text(
+        "Things can come closer and yet be red: D = 1 is not at 90° but ahead of it. The speeds are three of the table of J. Walker’s *C-ship* (Fourmilab), which lesson *Lights \
+         and aberration* has whole.",
+    );
     let rows = [0.28047668, 0.69861917, 0.96523621].map(|beta| -> Result<_, TeachError> {
         let map = passing(beta)?;
         let at = map.see(DVec3::new(-1.0, 1.0, 0.0));
@@ -131,7 +134,10 @@ fn angles() -> Result<Figure, TeachError> {
             let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
             [f64::from(degrees), map.doppler_towards(DVec3::new(-cosine, sine, 0.0))]
         });
-        series.push(Series::line(format!("β = {beta}"), d));
+        let mut line = Series::line(format!("β = {beta}"), d);
+        // Named where they are far apart, for who sees no colours.
+        line.points[150].label.clone_from(&line.name);
+        series.push(line);
     }
     let one = [[0.0, 1.0], [180.0, 1.0]];
     series.push(Series { stroke: Stroke::Dashed, ink: Some([120; 3]), ..Series::line("", one) });

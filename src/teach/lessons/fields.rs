@@ -81,7 +81,7 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     );
     let d = l.fixed("one over D there", 1.0 / map.see(DVec3::new(-0.5, 0.75f64.sqrt(), 0.0)).doppler, 4);
     l.text(format!(
-        "For example, what is 60° from straight ahead at rest is seen at 0.9c smaller by {a} along the motion and by {b} across it: the same, and equal to 1/D = {d}. So \
+        "For example, what is 60° from straight ahead at rest is seen at 0.9c {a} times as large along the motion and {b} times across it: the same, and equal to 1/D = {d}. So \
          what is blue-shifted looks small, and what is red-shifted large."
     ));
     l.attempt(

@@ -73,9 +73,22 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     let (mut out, mut back) = (shipped("gate", BETA)?, Shot::new(builtin_scene("gate_back")?.scene()));
     out.scene.view.set_time(out.scene.view.event.t() + 12.0 / BETA)?;
     back.samples = 4;
+    let further = out.scene.view.event.position().x - builtin_scene("gate")?.scene().view.event.position().x;
+    let further = l.fixed("further on than within the gate, metres", further, 0);
+    let past = back.scene.view.event.position().x - back.scene.bodies[0].motion.origin.position().x;
+    let looks = l.fixed(
+        "looking back, the gate looks to be at, metres",
+        map.see(DVec3::X * -past).position.length(),
+        0,
+    );
+    let past = l.fixed("looking back, past the gate by, metres", past, 0);
     l.plates([
-        Plate::shot("beyond", "12 m further, beyond the exit: now its back is seen, and still ahead.", out),
-        Plate::shot("back", "From 340 m behind the gate, looking back.", back),
+        Plate::shot("beyond", format!("{further} m further, beyond the exit: now its back is seen, and still ahead."), out),
+        Plate::shot(
+            "back",
+            format!("Looking back, when the camera is {past} m past the gate, as the gate has it: it looks to be {looks} m behind."),
+            back,
+        ),
     ]);
     let reel = shipped("gate", BETA)?.reel(96, 24.0)?;
     l.plates([Plate::reel("film", "The flight, by the camera’s clock.", reel)]);
@@ -111,7 +124,9 @@ fn aberration() -> Result<Figure, TeachError> {
             let at = map.see(DVec3::new(cosine, sine, 0.0)).position;
             [f64::from(degrees), at.y.atan2(at.x).to_degrees()]
         });
-        let line = Series::line(format!("β = {beta}"), seen);
+        let mut line = Series::line(format!("β = {beta}"), seen);
+        // Named where they are far apart, for who sees no colours.
+        line.points[120].label.clone_from(&line.name);
         series.push(if beta == 0.0 {
             Series { stroke: Stroke::Dashed, ink: Some([150; 3]), ..line }
         } else {

@@ -24,7 +24,8 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     l.plates(plates);
     l.text(
         "All four are taken when the same ball would look to be at the same place. Orange rods stay straight and grow long where they come; green \
-         and blue ones become hyperbolas. Balls keep round outlines, whatever the lattice does: see the lesson on spheres.",
+         and blue ones become hyperbolas. Balls keep round outlines on the sky, whatever the lattice does: see the lesson *The sphere stays round*. A pinhole draws out \
+         those off the middle of the picture, as in the first picture, where nothing moves: see *Fields of view*.",
     );
     l.heading("From outside");
     l.text(
@@ -62,9 +63,15 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     }
     l.table(["x′", "0.5c", "0.9c", "0.99c"], rows);
     let first = l.fixed("first ball that is seen behind, 0.99c", 0.99 / (1.0f64 - 0.99 * 0.99).sqrt(), 2);
+    let fast = passing(0.99)?;
+    let count = |is: &dyn Fn(f64) -> bool| places.into_iter().filter(|place| is(*place)).count() as f64;
+    let coming = |place: f64| fast.see(DVec3::new(place, 1.0, 0.0)).position.x < 0.0;
+    let coming = l.fixed("balls that are seen coming, 0.99c", count(&coming), 0);
+    let past = l.fixed("balls that are past", count(&|place| place > 0.0), 0);
     l.text(format!(
-        "At 0.99c every ball in the table is still seen coming, though half of them are past you: one 1 beside the line of flight is seen abreast \
-         only where x′ = γβ = {first}."
+        "At 0.99c {coming} of the {} balls in the table are still seen coming. {past} of them are past you, and one is abreast: a ball 1 beside the \
+         line of flight is seen abreast only where x′ = γβ = {first}.",
+        places.len()
     ));
     l.heading("In motion");
     let reel = shipped("lattice", 0.9)?.reel(96, 24.0)?;
@@ -80,10 +87,13 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     l.attempt("terrell animate lattice --color geometry --beside-standard", "beside slow motion");
     let map = passing(0.6)?;
     let at = |x: f64| map.see(DVec3::new(x, 1.0, 0.0)).position.x;
-    let seen = l.fixed("answer: ball that is abreast at 0.6c", at(0.75), 3);
+    let seen = l.fixed("answer: ball that is abreast at 0.6c", at(map.speed()), 3);
+    let abreast = l.fixed("answer: x′ of that ball", map.speed(), 2);
     l.ask(
         "At 0.6c, which x′ has the ball that is seen exactly abreast, if its row passes 1 beside you?",
-        format!("x′ = β r′ with r′² = x′² + 1 gives x′ = γβ = 0.75. Indeed Eq. 1 puts it at x = {seen}."),
+        format!(
+            "x′ = β r′ with r′² = x′² + 1 gives x′ = γβ = {abreast}. Indeed Eq. 1 puts it at x = {seen}."
+        ),
     );
     Ok(lecture)
 }

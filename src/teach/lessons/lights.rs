@@ -1,10 +1,12 @@
 use super::passing;
 use crate::color::Coloring;
-use crate::scene::builtin_scene;
+use crate::exposure::Exposure;
+use crate::scene::{Scene, builtin_scene, shapes};
 use crate::teach::lecture::Lecture;
 use crate::teach::plate::{Plate, Shot, TeachError};
 use crate::tone::Tone;
 use glam::DVec3;
+use std::sync::Arc;
 
 pub(super) fn lecture() -> Result<Lecture, TeachError> {
     let mut lecture = Lecture::default();
@@ -15,10 +17,12 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
          each surface, the surface is lit there as ever, and what it reflects is seen like light of its own.",
     );
     l.plates([
-        Plate::shot("balls", "Four equal balls at 0, 0.5c, 0.9c, 0.99c, lit by one sun at the right, rising; without shift and beaming.", Shot::new(sunlit()?)),
-        Plate::shot("log", "With it, by the logarithm of brightness.", {
-            let mut shot = Shot::new(sunlit()?).colored(Coloring::Spectral);
-            shot.tone = Some(Tone::Log);
+        Plate::shot("balls", "Four equal white balls at 0, 0.5c, 0.9c, 0.99c, lit by one sun at the right, rising; without shift and beaming.", Shot::new(plain()?)),
+        Plate::shot("chequer", "The same balls with a chequer, which shows how they seem to be turned.", Shot::new(sunlit()?)),
+        Plate::shot("log", "The white ones with shift and beaming, by the logarithm of brightness: of the fastest a thin crescent is left.", {
+            let mut shot = Shot::new(plain()?).colored(Coloring::Spectral);
+            // The fourth is to be seen, though the first is all but white.
+            (shot.tone, shot.exposure) = (Some(Tone::Log), Some(Exposure::Fixed(2.0)));
             shot
         }),
     ]);
@@ -29,7 +33,7 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     l.heading("Where the light comes from");
     l.formula("cos ι′ = (cos ι + β) / (1 + β cos ι)");
     l.text("ι is the angle between the motion and the direction to a distant light, in the frame where the light is given; ι′ the same in the moving body’s frame.");
-    let mut rows = Vec::new();
+    let (mut rows, mut cone) = (Vec::new(), String::new());
     for beta in [0.5, 0.9, 0.99] {
         let at = |degrees: f64| -> Result<f64, TeachError> {
             let (sine, cosine) = degrees.to_radians().sin_cos();
@@ -37,18 +41,41 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
             let seen = passing(-beta)?.see(DVec3::new(cosine, sine, 0.0)).position;
             Ok(seen.y.atan2(seen.x).to_degrees())
         };
+        // What is told last is of the fastest.
+        cone = l.fixed(format!("light from 90° at {beta}, degrees"), at(90.0)?, 2);
         rows.push([
             format!("{beta}"),
             l.fixed(format!("light from 45° at {beta}, degrees"), at(45.0)?, 2),
-            l.fixed(format!("light from 90° at {beta}, degrees"), at(90.0)?, 2),
+            cone.clone(),
             l.fixed(format!("light from 135° at {beta}, degrees"), at(135.0)?, 2),
         ]);
     }
     l.table(["β", "from 45°", "from 90°", "from 135°"], rows);
+    // Of D² over all directions at rest, which is the energy of light from all around, how much is ahead.
+    let ahead = |beta: f64| (1.0 + beta + beta * beta / 3.0) / (2.0 + 2.0 / 3.0 * beta * beta);
+    let share = l.fixed("energy of starlight from within that at 0.99, percent", 100.0 * ahead(0.99), 1);
+    l.text(format!(
+        "The column of 90° is arccos β: half of the sky, and all that comes from it, is gathered within that angle of straight ahead. At 0.99c half of the stars are within \
+         {cone}° of it, and {share} % of the energy of their light comes from there, if they are spread evenly over the sky at rest: a ball in the light of all the stars is \
+         lit nearly from the front alone."
+    ));
     l.text(
-        "The column of 90° is arccos β: half of the sky, and all that comes from it, is gathered within that angle of straight ahead. At 0.99c it is a cone of 8°, and a \
-         ball in the light of all the stars is lit from the front alone.",
+        "The *C-ship* of J. Walker’s pages (Fourmilab) flies ever faster. A table there says from where, aboard, light comes that at rest comes from 45° off straight ahead, and by \
+         how much it is shifted to the blue. For its four speeds, worked out anew:",
     );
+    let mut rows = Vec::new();
+    for beta in C_SHIP {
+        let map = passing(-beta)?;
+        let seen = map.see(DVec3::new(1.0, 1.0, 0.0));
+        let angle = seen.position.y.atan2(seen.position.x).to_degrees();
+        rows.push([
+            format!("{beta:.4}"),
+            l.fixed(format!("C-ship: 1/γ at {beta:.4}"), 1.0 / map.gamma(), 5),
+            l.digits(format!("C-ship: light from 45° at {beta:.4}, degrees"), angle, 3),
+            l.fixed(format!("C-ship: D of it at {beta:.4}"), seen.doppler, 2),
+        ]);
+    }
+    l.table(["β of the C-ship", "1/γ", "from 45°", "D"], rows);
     l.heading("How strong it is");
     let mut rows = Vec::new();
     for beta in [0.5, 0.9, 0.99] {
@@ -68,8 +95,8 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         "A surface that faces a distant light gets D² times the power, one factor for each photon’s energy, one for how many arrive in a second. Even light from the side is \
          stronger, by γ². What the surface sends on is then seen with the D of the surface itself, which may well undo it.",
     );
-    l.attempt("terrell render sunlit --color geometry", "the first picture, larger");
-    l.attempt("terrell render sunlit --tone log --legend", "the second");
+    l.attempt("terrell render sunlit --color geometry", "the second picture, larger");
+    l.attempt("terrell render sunlit --tone log --legend", "its light as it is seen, by logarithms");
     l.attempt("terrell render box", "lit by a body in motion, with reflections");
     let seen = passing(-0.8)?.see(DVec3::Y).position;
     let angle = l.fixed("answer: light from the side at 0.8c, degrees", seen.y.atan2(seen.x).to_degrees(), 2);
@@ -80,6 +107,19 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     Ok(lecture)
 }
 
-fn sunlit() -> Result<crate::scene::Scene, TeachError> {
+/// Speeds of J. Walker's C-ship.
+const C_SHIP: [f64; 4] = [0.28047668, 0.69861917, 0.96523621, 0.9996484];
+
+fn sunlit() -> Result<Scene, TeachError> {
     Ok(builtin_scene("sunlit")?.scene())
+}
+
+/// Without a chequer, in which one does not see where light ends.
+fn plain() -> Result<Scene, TeachError> {
+    let mut scene = sunlit()?;
+    let ball = Arc::new(shapes::ball());
+    for body in &mut scene.bodies {
+        body.mesh = ball.clone();
+    }
+    Ok(scene)
 }

@@ -38,8 +38,9 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     };
     l.plates([Plate::figure(
         "hyperbolas",
-        "Five rods across the motion, two lengths apart at rest, with the observer at the cross. Dashed: asymptotes of the fourth. Those \
-         that come (left) are drawn apart, those that go (right) are crowded together.",
+        "Five rods across the motion, two lengths apart at rest, with the observer at the dot. Dashed: asymptotes of the fourth. Those \
+         that come (left) are drawn apart, those that go (right) are crowded together. So that all five are there, the lower two have \
+         smaller scales along the motion.",
         figure,
     )]);
     let mut rows = Vec::new();
@@ -77,11 +78,11 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         "terrell’s usual method avoids the question: it asks for every pixel which triangle its line of sight meets in the body’s rest \
          frame, where edges are straight.",
     );
-    let told = "The same at 0.95c, when its middle looks to be abreast. Its long rods are hyperbolas; the short ones, along the motion, \
-                stay straight.";
+    let told = "Such masts at 0.95c, measured as far apart, when the middle of the third looks to be abreast; the first, far to the left, is \
+                out of view. Upright rods are hyperbolas; the short ones, along the motion, stay straight.";
     l.plates([
-        Plate::shot("mast_rest", "A mast of rods at rest.", own(MAST, 0.0)?),
-        Plate::shot("mast", told, own(MAST, 0.95)?),
+        Plate::shot("mast_rest", "Five masts of rods at rest, 4 apart.", own(&masts(), 0.0)?),
+        Plate::shot("mast", told, own(&masts(), 0.95)?),
     ]);
     l.attempt("terrell render lattice --color geometry --edges", "rods in all three directions");
     l.attempt("terrell render lattice --color geometry --beta 0.99 --edges", "the same, faster");
@@ -100,21 +101,32 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     Ok(lecture)
 }
 
-/// Long rods across the motion, short ones along it.
-const MAST: &str = r#"
+/// Masts one behind the other: long rods across the motion, short ones along it.
+fn masts() -> String {
+    let mut toml = r#"
 [camera]
 position = [0, 0, 0]
 forward = [0, 1, 0]
 fov_deg = 110
-nearest = "mast"
-
+nearest = "mast 3"
+"#
+    .to_owned();
+    // As measured, at every speed.
+    for (i, x) in [-8, -4, 0, 4, 8].into_iter().enumerate() {
+        toml += &format!(
+            r#"
 [[body]]
-name = "mast"
+name = "mast {}"
 mesh = "lattice"
-position = [0, 5, 0]
-rotation = { axis = [0, 1, 0], angle_deg = 90 }
+position = [{x}, 5, 0]
+rotation = {{ axis = [0, 1, 0], angle_deg = 90 }}
 velocity = [0.95, 0, 0]
-"#;
+"#,
+            i + 1
+        );
+    }
+    toml
+}
 
 fn before_a_camera() -> Result<(ApparentMap, Field), TeachError> {
     use crate::relativity::Motion;
@@ -143,11 +155,17 @@ fn hyperbolas(beta: f64) -> Result<Panel, TeachError> {
         let ends = [[meet - 6.0 * slope, -6.0], [meet, 0.0], [meet - 6.0 * slope, 6.0]];
         series.push(Series { stroke: Stroke::Dashed, ink: Some([150; 3]), ..Series::line("", ends) });
     }
-    let cross = crate::figure::Point::default();
-    series.push(Series { ink: Some([30; 3]), ..Series::points("", vec![cross]) });
+    // The first is seen at −4γ(1 + β) on the line of flight.
+    let left = match beta {
+        b if b < 0.6 => -12.0,
+        b if b < 0.95 => -24.0,
+        _ => -72.0,
+    };
+    let observer = crate::figure::Point::default();
+    series.push(Series { ink: Some([30; 3]), ..Series::points("", vec![observer]) });
     Ok(Panel {
         title: format!("β = {beta}"),
-        x: Axis::linear("x, along the motion").from_to(-12.0, 6.0),
+        x: Axis::linear("x, along the motion").from_to(left, 6.0),
         y: Axis::linear("ρ, across").from_to(-6.0, 6.0),
         series,
         ..Panel::default()

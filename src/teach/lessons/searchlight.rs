@@ -1,7 +1,7 @@
 use super::{passing, shipped};
 use crate::color::Coloring;
 use crate::exposure::Exposure;
-use crate::figure::{Axis, Figure, Panel, Series};
+use crate::figure::{Axis, Figure, Panel, Series, Stroke};
 use crate::teach::lecture::Lecture;
 use crate::teach::plate::{Plate, TeachError};
 use crate::tone::Tone;
@@ -46,7 +46,8 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     l.heading("The beam");
     l.text(
         "A lamp that shines alike in all directions in its own frame is a searchlight for those it passes: half of its photons go forward within the angle \
-         whose cosine is β. The curves show the energy it sends into each direction.",
+         whose cosine is β. The curves show the energy it sends into each direction, which goes with D³: each photon has D times its energy, and a patch of the \
+         sky gets D² times as many of them.",
     );
     let rows = [0.5, 0.9, 0.99, 0.999].map(|beta| -> Result<_, TeachError> {
         // A ray at right angles in its own frame, of light that goes out.
@@ -63,9 +64,16 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     l.table(["β", "half the photons within (°)", "which carry of the energy (%)"], rows);
     l.plates([Plate::figure(
         "beam",
-        "Energy that a lamp sends into each direction, by that to which it sends most; it moves to the right.",
+        "Energy that a lamp sends into each direction (D³), by that to which it sends most; it moves to the right.",
         beam()?,
     )]);
+    let sent = l.fixed("sent backward over forward at 0.3, D³", ratio(0.3, -3)?, 3);
+    let arriving = l.fixed("arriving from going over coming at 0.3, D⁴", ratio(0.3, -4)?, 3);
+    l.text(format!(
+        "This is what leaves the lamp, with no regard to when it arrives. Who receives it gets it in a time that is shorter by D as well, so that power as it \
+         arrives, and with it brightness, goes with D⁴, as in the table above. At 0.3c a lamp sends {sent} times as much energy backward as forward; \
+         of its power {arriving} times as much arrives when it goes as when it comes."
+    ));
     l.heading("What a screen can show");
     let stops = ratio(0.9, 4)?.log2();
     let stops = l.fixed("octaves between coming and going at 0.9c, D⁴", stops, 1);
@@ -113,7 +121,13 @@ fn energy_within(beta: f64, angle: f64) -> f64 {
 
 fn beam() -> Result<Figure, TeachError> {
     let mut series = Vec::new();
-    for beta in [0.0, 0.3, 0.6, 0.9] {
+    // With degrees from the motion at which curves have their names.
+    for (beta, named, stroke) in [
+        (0.0, 60, Stroke::Line),
+        (0.3, 50, Stroke::Dashed),
+        (0.6, 35, Stroke::Line),
+        (0.9, 12, Stroke::Dashed),
+    ] {
         let map = passing(beta)?;
         let d = |cosine: f64, sine: f64| map.doppler_towards(DVec3::new(-cosine, sine, 0.0));
         let most = d(1.0, 0.0).powi(3);
@@ -122,7 +136,9 @@ fn beam() -> Result<Figure, TeachError> {
             let share = d(cosine, sine.abs()).powi(3) / most;
             [share * cosine, share * sine]
         });
-        series.push(Series::line(format!("β = {beta}"), curve));
+        let mut curve = Series { stroke, ..Series::line(format!("β = {beta}"), curve) };
+        curve.points[2 * named].label.clone_from(&curve.name);
+        series.push(curve);
     }
     let panel = Panel {
         x: Axis::linear("along the motion").from_to(-1.1, 1.1),

@@ -1,5 +1,7 @@
+use super::cube::{ABOVE, chequered};
 use super::{own, passing};
-use crate::figure::{Axis, Figure, Panel, Series, Stroke};
+use crate::drawing::number;
+use crate::figure::{Axis, Figure, Panel, Point, Series, Stroke};
 use crate::teach::lecture::Lecture;
 use crate::teach::plate::{Plate, Reel, Shot, TeachError};
 use glam::{DVec2, DVec3};
@@ -10,8 +12,10 @@ const BETA: f64 = 0.9;
 /// How far away what passes does.
 const AWAY: f64 = 3.0;
 
-/// A cube of edge 1 whose middle appears abreast in the middle of the picture.
-const SCENE: &str = r#"
+/// A cube of edge 1 whose middle appears abreast in the middle of the picture, tipped towards who looks.
+fn scene() -> String {
+    format!(
+        r#"
 [camera]
 position = [0, 0, 0]
 forward = [0, 1, 0]
@@ -21,9 +25,12 @@ nearest = "cube"
 [[body]]
 name = "cube"
 mesh = "cube"
-position = [0, 3, 0]
-velocity = [0.9, 0, 0]
-"#;
+position = [0, {AWAY}, 0]
+velocity = [{BETA}, 0, 0]
+rotation = {{ axis = [1, 0, 0], angle_deg = {ABOVE} }}
+"#
+    )
+}
 
 pub(super) fn lecture() -> Result<Lecture, TeachError> {
     let mut lecture = Lecture::default();
@@ -42,7 +49,8 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         Ok(end(0.5) - end(-0.5))
     };
     let delayed = |coming: f64| 1.0 / (1.0 - coming * BETA);
-    let rows = [("coming", rod(-5.0)?, 1.0), ("going", rod(5.0)?, -1.0)].map(|(name, seen, coming)| {
+    let rods = [("coming", rod(-5.0)?, 1.0), ("going", rod(5.0)?, -1.0)];
+    let rows = rods.map(|(name, seen, coming)| {
         [
             name.to_owned(),
             l.fixed(format!("rod {name}, measured"), 1.0 / gamma, 3),
@@ -51,8 +59,21 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
         ]
     });
     l.table(["rod of length 1 at 0.9c", "measured", "delay of light alone", "seen"], rows);
+    let panels = rods
+        .map(|(name, seen, coming)| {
+            let lengths = [1.0, 1.0 / gamma, delayed(coming), seen];
+            let names = ["at rest", "measured", "delay alone", "seen"];
+            let most = lengths.into_iter().fold(0.0, f64::max);
+            rod_panel(name, &names.into_iter().zip(lengths).collect::<Vec<_>>(), most)
+        })
+        .into();
+    l.plates([Plate::figure(
+        "rod",
+        "The rod, coming and going, around its middle. Mind the scales.",
+        Figure { rows: vec![panels], panel_size: [320.0, 150.0], ..Figure::default() },
+    )]);
     l.text(
-        "The middle column is what one would see if nothing were contracted and light only took its time, as physicists before \
+        "The table’s middle column is what one would see if nothing were contracted and light only took its time, as physicists before \
          1905 could have worked out. What is seen is both at once: contraction and delay. A rod that comes looks *longer* \
          than at rest. Contraction is real, but it is not what an eye or a camera sees.",
     );
@@ -75,14 +96,20 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
          light slows down to its true speed, the square falls back to where it looks to be, and is sheared: far corners are seen \
          as they were longer ago, and so further back.",
     );
-    l.plates([Plate::reel(
-        "knob",
-        "From what is measured to what is seen: the delay of light, from none to all of it, and back.",
-        Reel::of_figures(73, 24.0, |i| {
+    let turned = |figure: fn(f64) -> Figure| {
+        Reel::of_figures(73, 24.0, move |i| {
             let turn = i as f64 / 72.0 * std::f64::consts::TAU;
-            knob(0.5 - 0.5 * turn.cos())
-        }),
-    )]);
+            figure(0.5 - 0.5 * turn.cos())
+        })
+    };
+    l.plates([
+        Plate::reel(
+            "knob",
+            "From what is measured to what is seen: the delay of light, from none to all of it, and back.",
+            turned(knob),
+        ),
+        Plate::reel("rod_knob", "The same of the rod, coming and going.", turned(rod_knob)),
+    ]);
     l.heading("Gamow’s error");
     let far = 1000.0;
     let map = passing(BETA)?;
@@ -98,15 +125,21 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
          measured. Far away and abreast the near side of a cube is indeed seen {near} wide, but beside it its back is seen, {back} \
          wide, which nobody could see of a flattened cube. The sum of the squares is 1: the cube looks turned, not flattened."
     ));
-    let rest = own(SCENE, 0.0)?;
-    let seen = own(SCENE, BETA)?;
+    let rest = chequered(own(&scene(), 0.0)?);
+    let seen = chequered(own(&scene(), BETA)?);
     let plate = |name: &str, caption: &str, shot: Shot| Plate::shot(name, caption, shot);
     l.plates([
-        plate("rest", "At rest.", rest.clone()),
-        plate("flattened", "As Gamow had it drawn: contracted, and that is all.", flattened(rest, gamma)),
+        plate("rest", &format!("At rest, from {ABOVE}° above."), rest.clone()),
+        plate(
+            "flattened",
+            "As Gamow had it drawn: contracted, and that is all.",
+            stretched(rest, 1.0 / gamma),
+        ),
+        // So long in its own frame that it is measured to be as long as at rest.
+        plate("delayed", "As light’s delay alone would show it at 0.9c.", stretched(seen.clone(), gamma)),
         plate("seen", "As it is seen at 0.9c: turned, its yellow back in view.", seen),
     ]);
-    l.attempt("terrell render cube --color geometry", "the third picture, larger");
+    l.attempt("terrell render cube --color geometry", "the cube as it is seen, plain, on a level with you");
     l.attempt("terrell animate cube --color geometry --beside-standard", "a film of it, beside slow motion");
     l.attempt("terrell locate --beta 0.9,0,0 -5,0,0 5,0,0", "where points are seen, as numbers");
     let beta = 0.6;
@@ -125,9 +158,47 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     Ok(lecture)
 }
 
+/// A rod by lengths that it has, with their names, from above down; there is room for the greatest.
+fn rod_panel(title: &str, lengths: &[(&str, f64)], most: f64) -> Panel {
+    let row = |i: usize| (lengths.len() - i) as f64;
+    let series = lengths.iter().enumerate().map(|(i, (_, length))| {
+        let ends = [-0.5, 0.5].map(|end| Point { x: end * length, y: row(i), ..Point::default() });
+        let mut rod = Series { stroke: Stroke::Line, ink: Some([30; 3]), ..Series::points("", ends.into()) };
+        rod.points[1].label = number::fixed(*length, 3);
+        rod
+    });
+    let names = lengths.iter().enumerate().map(|(i, (name, _))| (row(i), Some((*name).to_owned())));
+    Panel {
+        title: title.to_owned(),
+        x: Axis::linear("along the motion").from_to(-0.7 * most, 0.7 * most),
+        y: Axis::linear("").from_to(0.4, row(0) + 0.6).with_marks(names),
+        series: series.collect(),
+        ..Panel::default()
+    }
+}
+
+/// The rod as it is seen by how slow light is: light from its far end left that much earlier.
+fn rod_knob(slowness: f64) -> Figure {
+    let seen = |coming: f64| contracted() / (1.0 - coming * BETA * slowness);
+    let most = contracted() / (1.0 - BETA);
+    let panel = rod_panel("", &[("coming", seen(1.0)), ("going", seen(-1.0))], most);
+    Figure {
+        title: delay(slowness),
+        rows: vec![vec![panel]],
+        panel_size: [560.0, 120.0],
+        ..Figure::default()
+    }
+}
+
+fn delay(slowness: f64) -> String {
+    format!("light’s delay: {:.0} %", 100.0 * slowness)
+}
+
+/// Of a side of the square.
+const PARTS: usize = 24;
+
 /// A square's outline in its rest frame, around its middle.
 fn square() -> impl Iterator<Item = DVec2> {
-    const PARTS: usize = 24;
     let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)];
     let corners = corners.map(|(x, y)| DVec2::new(x, y));
     let sides: Vec<_> = corners.windows(2).map(|pair| (pair[0], pair[1])).collect();
@@ -161,18 +232,23 @@ fn panel(series: Vec<Series>) -> Panel {
 }
 
 fn observer() -> Series {
-    let eye = crate::figure::Point { label: "who looks".into(), ..crate::figure::Point::default() };
+    let eye = Point { label: "who looks".into(), ..Point::default() };
     Series { ink: Some([30; 3]), ..Series::points("", vec![eye]) }
 }
 
 fn plan() -> Figure {
     let dashed = |series: Series| Series { stroke: Stroke::Dashed, ..series };
+    // With its name in the middle of its near side, of its right, of its far or of its left.
+    let named = |side: usize, mut series: Series| {
+        series.points[side * (PARTS + 1) + PARTS / 2].label.clone_from(&series.name);
+        series
+    };
     let at_rest = square().map(|p| [p.x, AWAY + p.y]);
     let series = vec![
-        dashed(Series::line("at rest", at_rest)),
-        Series::line("measured", outline(contracted(), 0.0)),
-        Series::line("delay alone", outline(1.0, 1.0)),
-        Series::line("seen", outline(contracted(), 1.0)),
+        named(1, dashed(Series::line("at rest", at_rest))),
+        named(2, Series::line("measured", outline(contracted(), 0.0))),
+        named(3, dashed(Series::line("delay alone", outline(1.0, 1.0)))),
+        named(0, Series::line("seen", outline(contracted(), 1.0))),
         observer(),
     ];
     Figure { rows: vec![vec![panel(series)]], panel_size: [560.0, 360.0], ..Figure::default() }
@@ -184,15 +260,19 @@ fn knob(slowness: f64) -> Figure {
         Series::line("seen", outline(contracted(), slowness)),
         observer(),
     ];
-    let title = format!("light’s delay: {:.0} %", 100.0 * slowness);
-    Figure { title, rows: vec![vec![panel(series)]], panel_size: [560.0, 360.0], ..Figure::default() }
+    Figure {
+        title: delay(slowness),
+        rows: vec![vec![panel(series)]],
+        panel_size: [560.0, 360.0],
+        ..Figure::default()
+    }
 }
 
-/// The scene with all its bodies made shorter along x.
-fn flattened(mut shot: Shot, gamma: f64) -> Shot {
+/// The scene with all its bodies made so many times as long along x.
+fn stretched(mut shot: Shot, factor: f64) -> Shot {
     for body in &mut shot.scene.bodies {
         let mesh = Arc::make_mut(&mut body.mesh);
-        mesh.x.iter_mut().for_each(|x| *x /= gamma);
+        mesh.x.iter_mut().for_each(|x| *x *= factor);
     }
     shot
 }
@@ -209,6 +289,11 @@ mod tests {
             let by_map = map.see(DVec3::new(gamma * x, y, 0.0)).position;
             assert!((by_map.x - seen(x, y, 1.0)).abs() < 1e-12 && (by_map.y - y).abs() < 1e-12);
             assert_eq!(seen(x, y, 0.0), x);
+        }
+        // The rod, whose light comes along it.
+        for (x, coming) in [(-5.0, 1.0), (5.0, -1.0)] {
+            let length = seen(x + 0.5 / gamma, 0.0, 1.0) - seen(x - 0.5 / gamma, 0.0, 1.0);
+            assert!((length - contracted() / (1.0 - coming * BETA)).abs() < 1e-12, "{coming}");
         }
         // Its middle looks to be abreast.
         assert!(seen(BETA * AWAY, AWAY, 1.0).abs() < 1e-12);

@@ -1,5 +1,5 @@
 use super::{own, shipped};
-use crate::figure::{Axis, Figure, Panel, Series, Stroke};
+use crate::figure::{Axis, Figure, Marker, Panel, Series, Stroke};
 use crate::plan::Method;
 use crate::teach::lecture::Lecture;
 use crate::teach::plate::{Plate, TeachError};
@@ -66,7 +66,7 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     l.text(format!("One unit of time later they are seen at {back} and {forth}."));
     l.plates([Plate::figure(
         "two_images",
-        format!("When the shadow is at a place on the floor, and when it is seen there from {eye} beyond the lamp. A horizontal line meets the second curve twice: two images."),
+        format!("When the shadow is at a place on the floor, and when it is seen there from {eye} beyond the lamp. A moment of looking, a horizontal line, meets the second curve twice (dots): two images."),
         figure(&shadow, eye),
     )]);
     let at = |name: &str, caption: &str, later: f64| -> Result<Plate, TeachError> {
@@ -196,15 +196,19 @@ fn figure(shadow: &Shadow, eye: f64) -> Figure {
     let there = places().map(|x| [x * shadow.lever(), shadow.time(x)]);
     let seen = places().map(|x| [x * shadow.lever(), shadow.seen(x, eye)]);
     let line = shadow.seen(shadow.seen_first(), eye) + 1.0;
+    let [back, forth] = shadow.images(line, eye).map(|x| x * shadow.lever());
+    // Its ends are beyond the axes, where there are no markers.
     let two = Series {
-        stroke: Stroke::Dashed,
+        marked: true,
+        marker: Some(Marker::Circle),
         ink: Some([130; 3]),
-        ..Series::line("a moment of looking", [[-11.0, line], [13.0, line]])
+        ..Series::line("a moment of looking", [-12.0, back, forth, 14.0].map(|x| [x, line]))
     };
+    let there = Series { stroke: Stroke::Dashed, ..Series::line("shadow is there", there) };
     let panel = Panel {
         x: Axis::linear("place on the floor, along the motion").from_to(-11.0, 13.0),
         y: Axis::linear("time").from_to(-10.0, 22.0),
-        series: vec![Series::line("shadow is there", there), Series::line("shadow is seen there", seen), two],
+        series: vec![there, Series::line("shadow is seen there", seen), two],
         ..Panel::default()
     };
     Figure { rows: vec![vec![panel]], panel_size: [520.0, 360.0], ..Figure::default() }

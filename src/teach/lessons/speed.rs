@@ -12,6 +12,9 @@ use terrell_geodesic::{Celerity, Event, Tetrad};
 
 const SIZE: [u32; 2] = [320, 180];
 
+/// Pictures timed of each way.
+const REPEATS: u32 = 9;
+
 /// Pixels.
 const TOLERANCES: [f64; 5] = [4.0, 1.0, 0.25, 0.0625, 0.015625];
 
@@ -59,15 +62,15 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     l.text(format!(
         "Pixels that differ are those that see another body or another face than a ray through their middle does; the picture has {} of them. Without any cuts they are {uncut}, in \
          {uncut_time} ms. Exact shading, which moves nothing and asks every pixel which triangle it sees in the sky of its rest frame, has {exact}, in {exact_time} ms: it \
-         does more work for a pixel and none for pieces. Times are of the machine that made this page, once; that is why they are not to be \
-         taken for more than their ratios.",
+         does more work for a pixel and none for pieces. Times are of the machine that made this page, the medians of up to {REPEATS} pictures each, and \
+         not to be taken for more than their ratios.",
         SIZE[0] * SIZE[1]
     ));
     l.heading("Where a formula fails");
     l.text(
         "Accuracy is not only a matter of how much one computes. Eq. 1, as it is printed, subtracts βr′ from x′. Of what lies straight behind what is left is r′(1 − β), a \
          part 1/2γ² of either: so many digits are gone. Written with r′ − x′ and 1 − β worked out for themselves, nothing is lost. Listed is how many \
-         digits of x are right for a point that is seen straight behind its line of flight, of the sixteen (or seven) that there are.",
+         digits of x are right for a point that has flown past the observer and goes straight away, of the sixteen (or seven) that there are.",
     );
     let mut rows = Vec::new();
     for gamma in [10.0, 1e3, 1e5, 1e7] {
@@ -103,7 +106,7 @@ fn sweep() -> Result<Vec<SweepPoint>, TeachError> {
     let options = Options { coloring: shot.coloring, ..Options::default() };
     let mut ways = usual_ways(&options, &TOLERANCES, &[], &[1]);
     ways.retain(|way| way.options.raster == Raster::Cpu && way.series != "f32 vertices");
-    let sweep = Sweep { scene: &shot.scene, camera: &camera, ways, reference_samples: 1, repeats: 3 };
+    let sweep = Sweep { scene: &shot.scene, camera: &camera, ways, reference_samples: 1, repeats: REPEATS };
     Ok(sweep.run(&options, |_| Ok(Development::default()), || ())?)
 }
 
@@ -140,7 +143,7 @@ fn chart(points: &[SweepPoint]) -> Figure {
     Figure { rows: vec![vec![panel]], panel_size: [560.0, 360.0], ..Figure::default() }
 }
 
-/// How many digits of x are right of a point straight behind its line of flight, 0.7 from its body's origin, by Eq. 1 as it is
+/// How many digits of x are right of a point that goes straight away, 0.7 from its body's origin, by Eq. 1 as it is
 /// printed in f64 and f32, and as it is used.
 fn digits(gamma: f64) -> Result<(f64, f64, f64), TeachError> {
     const PLACE: f64 = 0.7;

@@ -12,7 +12,7 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     let l = &mut lecture;
     l.text(
         "A fast sphere is measured to be flattened to 1/γ of its length. It is not seen so: its outline is a circle at every speed. R. Penrose showed \
-         it in 1959, in a page. The rays that graze the sphere form a circular cone around its middle *in the sphere’s frame*; aberration, which takes \
+         it in 1959. The rays that graze the sphere form a circular cone around its middle *in the sphere’s frame*; aberration, which takes \
          directions of one observer to those of another, takes every circle of the sky to a circle.",
     );
     l.plates([Plate::shot(
@@ -27,8 +27,8 @@ pub(super) fn lecture() -> Result<Lecture, TeachError> {
     l.heading("Measured");
     l.text(
         "A sphere of radius 1 at a distance of 3, abreast in its own frame. A hundred rays that graze it are aberrated; listed is how far they are from one \
-         circle at most, how wide that is, and how far the sphere’s middle is seen from the circle’s. The middle is not in the middle: one half \
-         of the sphere is nearer in time than the other.",
+         circle at most, how wide that is, and how far the sphere’s middle is seen from the circle’s. The middle is not in the middle: aberration \
+         crowds directions together towards where the sphere comes from, so that half of the cone is seen narrower than the other.",
     );
     let mut rows = Vec::new();
     for beta in [0.0, 0.5, 0.9, 0.99] {

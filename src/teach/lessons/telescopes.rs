@@ -256,11 +256,15 @@ fn apertures() -> Figure {
         ink: Some(INKS[0]),
         ..Series::line("a ball of 10 km", [])
     }];
-    for (name, size, ink) in
-        [("as large as the Earth", EARTH, INKS[2]), ("as large as the sun", SUN, INKS[1])]
-    {
-        let line = Series::line(name, ENDS.map(|distance| at(distance, size)));
-        series.push(Series { ink: Some(ink), ..line });
+    for (name, label, size, ink) in [
+        ("as large as the Earth", "an Earth", EARTH, INKS[2]),
+        ("as large as the sun", "a sun", SUN, INKS[1]),
+    ] {
+        // Named on the line, too, for who sees no colours.
+        let points =
+            [(ENDS[0], ""), (1e12, label), (ENDS[1], "")].map(|(far, label)| point(at(far, size), label));
+        let line = Series::line(name, []);
+        series.push(Series { points: points.into(), ink: Some(ink), ..line });
     }
     // Each is named where there is room.
     for (name, metres, there) in
