@@ -103,7 +103,7 @@ impl Outlook {
         if !curved {
             for (prospect, body) in prospects.iter_mut().zip(&scene.bodies) {
                 if prospect.celerity.is_some_and(|celerity| celerity > STILL) {
-                    let observer = body.motion.seen_passed(body.centre(), &camera.observer, 0.0).ok();
+                    let observer = body.motion.seen_abreast(body.centre(), &camera.observer).ok();
                     prospect.passage = observer.map(|observer| passage(body, &observer));
                 }
             }

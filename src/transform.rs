@@ -88,6 +88,11 @@ pub enum TransformError {
     /// A spectrum that cannot be.
     #[error(transparent)]
     Shading(#[from] ShadingError),
+    /// Bent light.
+    #[error(
+        "in curved spacetime a body can be seen in several places at once, so it has no one apparent shape; draw it with `terrell render`"
+    )]
+    Curved,
 }
 
 /// Moves every body to where `camera` sees it (Nollert et al. 2000, Eq. 1), cut until flat triangles are nowhere
@@ -98,7 +103,7 @@ pub enum TransformError {
 /// its flat faces, by the derivative of the map.
 ///
 /// # Errors
-/// If the tolerance cannot be kept.
+/// If the tolerance cannot be kept, or spacetime is curved.
 ///
 /// # Panics
 /// If there is no moment.
@@ -110,6 +115,9 @@ pub fn transform(
     options: &Options,
 ) -> Result<(Model, Report), TransformError> {
     let start = Instant::now();
+    if scene.spacetime.is_curved() {
+        return Err(TransformError::Curved);
+    }
     let observers: Vec<Observer> =
         moments.iter().map(|m| Observer::new(m, options.axes)).collect::<Result<_, _>>()?;
     let diagonal = |body: &Body| body.mesh.bounds().map_or(0.0, |(low, high)| (high - low).length());

@@ -1,36 +1,12 @@
 //! The command as people use it: what it writes, what it says, and what it refuses.
 
+#[path = "common/assertion.rs"]
+mod assertion;
 mod common;
 
-use assert_cmd::Command;
+use assertion::{folder, refused, terrell};
 use common::read_exr;
 use std::path::Path;
-
-fn terrell(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
-    Command::cargo_bin("terrell").unwrap().current_dir(folder).args(arguments).assert()
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().unwrap()
-}
-
-/// Exit code 2, all the parts in the message, no file left behind that was not there.
-fn refused(folder: &Path, arguments: &[&str], parts: &[&str]) {
-    let files = || {
-        let mut names: Vec<_> = std::fs::read_dir(folder).unwrap().map(|f| f.unwrap().file_name()).collect();
-        names.sort();
-        names
-    };
-    let before = files();
-    let output = terrell(folder, arguments).code(2).get_output().clone();
-    let message = String::from_utf8(output.stderr).unwrap();
-    for part in parts {
-        assert!(message.contains(part), "{arguments:?} says\n{message}which lacks '{part}'");
-    }
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-    assert!(!message.contains("panicked"), "{message}");
-    assert_eq!(files(), before, "{arguments:?} left something behind");
-}
 
 #[test]
 fn the_main_job_needs_no_file_and_no_flag() {

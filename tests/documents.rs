@@ -55,6 +55,25 @@ fn links_lead_somewhere() {
     assert!(count > 100, "{count}");
 }
 
+/// A table without a head is shown as it is written.
+#[test]
+fn tables_have_heads() {
+    for path in documents() {
+        let text = prose(&path);
+        let mut lines = text.lines().peekable();
+        let mut within = false;
+        while let Some(line) = lines.next() {
+            let begins = line.starts_with('|') && !within;
+            within = line.starts_with('|');
+            assert!(
+                !begins || lines.peek().is_some_and(|next| next.starts_with("|-")),
+                "{}: {line}",
+                path.display()
+            );
+        }
+    }
+}
+
 #[test]
 fn the_book_has_all_pages() {
     let docs = root().join("docs");

@@ -28,6 +28,20 @@ fn explain_says_what_is_seen_and_draws_nothing() {
     assert!(good(&["explain", "blackhole", "--size", "64x36"], folder.path()).contains("light is bent"));
     assert!(bad(&["explain", "cubes"], folder.path()).contains("cube"));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    // What is read is not written to, and what cannot be written is known before.
+    let toml = good(&["scenes", "cube"], folder.path());
+    std::fs::write(folder.path().join("my.toml"), &toml).unwrap();
+    for words in [
+        &["explain", "my.toml", "--json", "my.toml"][..],
+        &["render", "my.toml", "--explain", "--json", "my.toml"],
+        &["animate", "my.toml", "--explain", "--json", "my.toml"],
+        &["animate", "my.toml", "cube", "--explain", "--json", "a.json"],
+        &["explain", "my.toml", "--json", "none/a.json"],
+    ] {
+        bad(words, folder.path());
+    }
+    assert_eq!(std::fs::read_to_string(folder.path().join("my.toml")).unwrap(), toml);
+    assert!(good(&["explain", "gate", "--gamma", "1e6"], folder.path()).contains("note: "));
 }
 
 #[test]

@@ -116,7 +116,6 @@ fn shading_sees_what_rays_see() {
 
 /// Outlines are said to be within the tolerance, ¼ px, of where they belong.
 #[test]
-#[ignore = "known to fail: faces seen nearly edge-on (gate, lattice) are drawn up to about a pixel too wide"]
 fn outlines_keep_the_tolerance() {
     let mut off = Vec::new();
     for scene in scenes() {

@@ -358,8 +358,8 @@ fn shared_edges_are_cut_alike() {
     assert!(found >= 200, "{found} nodes compared");
 }
 
-/// Points inside triangles are where the exact map sees them, to the tolerance of surfaces: four times that of
-/// outlines, a third more in the middle of a piece.
+/// Points inside triangles are where the exact map sees them, to the tolerance of surfaces: one and a half times
+/// that of outlines, a third more in the middle of a piece.
 #[test]
 fn interiors_are_true_too() {
     let mut random = Random(11);
@@ -396,7 +396,7 @@ fn interiors_are_true_too() {
         }
     }
     println!("worst displacement inside a triangle: {worst_of_all:.2} tolerances");
-    assert!(worst_of_all < 16.0 / 3.0);
+    assert!(worst_of_all < 1.5 * 4.0 / 3.0);
 }
 
 #[test]

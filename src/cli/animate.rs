@@ -109,6 +109,9 @@ impl Animate {
         let start = Instant::now();
         let options = self.look.options()?;
         if self.explain.is_asked() {
+            if self.scenes.len() > 1 && self.report.has_json() {
+                return Err("--explain with --json is for one scene at a time".into());
+            }
             for scene in &self.scenes {
                 let Staged { scene, options, why, cameras, .. } = self.stage(scene, &options)?;
                 explain::tell(
@@ -190,9 +193,7 @@ impl Animate {
         let mut scene = self.look.scene.open(source, speed, |view| self.look.set_lens(view))?;
         let mut options = options.clone();
         let why = self.look.choose(&mut options, &scene)?;
-        scene.notes.extend(summary::light_notes(&scene, &options));
-        scene.notes.extend(summary::digit_note(&scene, options.method));
-        scene.notes.extend(scene.horizon_notes());
+        scene.notes.extend(summary::scene_notes(&scene, &options));
         let animation = self.animation(&scene)?;
         if scene.spacetime.is_curved() {
             if self.beside_standard {

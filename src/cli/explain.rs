@@ -3,6 +3,7 @@
 use super::Fault;
 use super::look::{LookFlags, MomentFlags};
 use super::report::ReportFlags;
+use super::summary;
 use clap::Args;
 use serde_json::{Value, json};
 use terrell::explanation::{Explanation, Verdict};
@@ -34,10 +35,11 @@ pub struct Explain {
 impl Explain {
     pub fn run(self) -> Result<(), Fault> {
         let mut options = self.look.options()?;
-        let scene = self.look.open(&self.scene, &self.moment)?;
+        let mut scene = self.look.open(&self.scene, &self.moment)?;
         let why = self.look.choose(&mut options, &scene)?;
         let camera = scene.camera()?;
         scene.eye(&camera)?;
+        scene.notes.extend(summary::scene_notes(&scene, &options));
         let outlook = Outlook::new(&scene, &camera)?;
         tell(&scene, &[&camera], &options, why, Some(&outlook), &self.report)
     }
@@ -65,6 +67,7 @@ pub fn tell(
     outlook: Option<&Outlook>,
     report: &ReportFlags,
 ) -> Result<(), Fault> {
+    report.check_json(&scene.files)?;
     if options.raster == Raster::Wgpu {
         // As drawing would.
         options.device(scene, cameras).map_err(|why| format!("no graphics processor draws this: {why}"))?;
@@ -85,6 +88,7 @@ pub fn tell(
         "contents": contents,
         "methods": verdicts(methods),
         "devices": verdicts(devices),
+        "notes": scene.notes,
     });
     let mut seen = String::new();
     if let Some(outlook) = outlook {
@@ -93,8 +97,9 @@ pub fn tell(
     }
     report.finish(Vec::new(), &scene.files, &summary)?;
     let why = why.unwrap_or("asked for");
-    report
-        .tell(&format!("{}: method {method} on {device} ({why})\n{seen}{explanation}", scene.name), &summary)
+    let notes: String = scene.notes.iter().map(|note| format!("note: {note}\n")).collect();
+    let told = format!("{}: method {method} on {device} ({why})\n{seen}{explanation}{notes}", scene.name);
+    report.tell(&told, &summary)
 }
 
 fn seen_by(outlook: &Outlook) -> Value {

@@ -23,6 +23,7 @@ use terrell::picture::{self, Format};
 use terrell::render::{Options, Report, Step, render_again};
 use terrell::scene::{Camera, Scene};
 use terrell::tone::Development;
+use terrell::transform::TransformError;
 
 /// One picture of a scene
 ///
@@ -79,6 +80,7 @@ impl Render {
         // Better known before the work than after.
         scene.eye(&camera)?;
         if self.explain.is_asked() {
+            scene.notes.extend(summary::scene_notes(&scene, &options));
             return explain::tell(&scene, &[&camera], &options, why, None, &self.report);
         }
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
@@ -90,9 +92,7 @@ impl Render {
         let read = start.elapsed();
         let mut progress = Progress::new(self.report.quiet);
         let coloring = options.coloring;
-        scene.notes.extend(summary::light_notes(&scene, &options));
-        scene.notes.extend(summary::digit_note(&scene, options.method));
-        scene.notes.extend(scene.horizon_notes());
+        scene.notes.extend(summary::scene_notes(&scene, &options));
         let mut film = Film::new(0, 0);
         let prepared = options.prepare(&scene, [&camera])?;
         let tables = start.elapsed() - read;
@@ -104,9 +104,7 @@ impl Render {
         scene.notes.extend(summary::gpu_note(&report));
         let to_lights = report.rays.as_ref().map_or(&[][..], |rays| &rays.to_lights);
         let dark = summary::dark_lights(to_lights, &scene, &camera.observer);
-        if let Some(light) = dark.iter().find(|light| light.shut_in) {
-            return Err(format!("{}; move it or take it away", light.told).into());
-        }
+        summary::check_shut_in(&dark)?;
         let is_dark_told = !dark.is_empty();
         scene.notes.extend(dark.into_iter().map(|light| light.told));
         let exposure = match shown {
@@ -159,8 +157,7 @@ impl Render {
     /// The scene's apparent shapes, for a picture from aside; a caption tells of the scene itself.
     fn recorded(&mut self, scene: &Scene, from: Option<DVec3>, coloring: Coloring) -> Result<Scene, Fault> {
         if scene.spacetime.is_curved() {
-            let why = "in curved spacetime a body can be seen in several places at once, so it has no one apparent shape";
-            return Err(format!("--detectors: {why}").into());
+            return Err(format!("--detectors: {}", TransformError::Curved).into());
         }
         scene.check_spacetime()?;
         let camera = scene.camera()?;

@@ -24,9 +24,8 @@ impl ReportFlags {
     /// Before the work: whether output and JSON can be written, and are none of what was read.
     pub fn check(&self, output: &Path, read: &[PathBuf]) -> Result<(), Fault> {
         check_not_read(output, read)?;
+        self.check_json(read)?;
         if let Some(json) = self.json_file() {
-            check_target(json)?;
-            check_not_read(json, read)?;
             let in_folder = output.is_dir()
                 && json.canonicalize().is_ok_and(|j| output.canonicalize().is_ok_and(|o| j.starts_with(o)));
             if json == output || in_folder {
@@ -36,9 +35,22 @@ impl ReportFlags {
         Ok(())
     }
 
+    /// The same of JSON alone.
+    pub fn check_json(&self, read: &[PathBuf]) -> Result<(), Fault> {
+        let Some(json) = self.json_file() else { return Ok(()) };
+        check_target(json)?;
+        check_not_read(json, read)
+    }
+
+    /// Whether there is to be JSON.
+    pub fn has_json(&self) -> bool {
+        self.json.is_some()
+    }
+
     /// After it: gives files their names, the JSON's among them, all or none.
     pub fn finish(&self, mut files: Vec<Pending>, read: &[PathBuf], summary: &Value) -> Result<(), Fault> {
         files.iter().try_for_each(|file| check_not_read(file.path(), read))?;
+        self.check_json(read)?;
         if let Some(path) = self.json_file() {
             let json = picture::prepare(path, |to| writeln!(to, "{summary:#}"))?;
             let plain = json.path().is_file() || !json.path().exists();

@@ -67,7 +67,7 @@ fn draw_all(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
 fn draw(scene: &Builtin) -> Result<Film, Fault> {
     let mut scene = scene.scene();
     scene.view.size = [320, 180];
-    // Rays where polygons show too little; they take their time, and much of what they show is averaged by itself.
+    // Rays only where light is bent: light of surfaces on each other takes too long.
     let method = cheapest(&scene, Coloring::Doppler).0;
     let samples = if scene.spacetime.is_curved() { 1 } else { 9 };
     // Shapes: some are too dark to be recognised as they are seen.

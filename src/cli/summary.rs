@@ -1,4 +1,4 @@
-//! What `--json` says of scenes and cameras, whatever was made of them.
+//! What is said of scenes, cameras and what was made of them: values of `--json`, notes, and words for people.
 
 use serde_json::{Value, json};
 use terrell::color::Coloring;
@@ -158,6 +158,14 @@ pub struct DarkLight {
     pub told: String,
 }
 
+/// The user's mistake, if one of them is shut in.
+pub fn check_shut_in(dark: &[DarkLight]) -> Result<(), String> {
+    match dark.iter().find(|light| light.shut_in) {
+        Some(light) => Err(format!("{}; move it or take it away", light.told)),
+        None => Ok(()),
+    }
+}
+
 /// Lights of which nothing reaches what is seen, by how many rays to each there were and were blocked.
 pub fn dark_lights(to_lights: &[[u64; 2]], scene: &Scene, observer: &Tetrad) -> Vec<DarkLight> {
     let dark =
@@ -213,8 +221,16 @@ pub fn digit_note(scene: &Scene, method: Method) -> Option<String> {
     lacks_digits(scene, method).then(note)
 }
 
+/// What of a scene a picture by these options does not show, or not to all digits.
+pub fn scene_notes(scene: &Scene, options: &Options) -> Vec<String> {
+    let mut notes = light_notes(scene, options);
+    notes.extend(digit_note(scene, options.method));
+    notes.extend(scene.horizon_notes());
+    notes
+}
+
 /// What is not drawn of a scene's light, for people to read.
-pub fn light_notes(scene: &Scene, options: &Options) -> Vec<String> {
+fn light_notes(scene: &Scene, options: &Options) -> Vec<String> {
     let colored = options.coloring != Coloring::Doppler;
     let unlit = colored && scene.lights.is_empty() && !has_reflections(scene);
     if unlit && scene.bodies.iter().flat_map(|b| &b.mesh.materials).any(|m| m.is_lit(false)) {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use terrell::export::{self, Format};
 use terrell::geodesic::Tetrad;
 use terrell::scene::{Camera, Scene, View};
-use terrell::transform::{Axes, Options, Report, transform};
+use terrell::transform::{Axes, Options, Report, TransformError, transform};
 
 /// The apparent shape of a scene, as a mesh for other programs
 ///
@@ -111,8 +111,8 @@ impl Transform {
         }
         let mut scene = self.scene()?;
         if scene.spacetime.is_curved() {
-            let why = "in curved spacetime a body can be seen in several places at once, so there is no one shape to write; draw it with `terrell render`";
-            return Err(why.into());
+            // Before anything is asked of the camera, which is another there.
+            return Err(TransformError::Curved.into());
         }
         scene.check_spacetime()?;
         scene.notes.extend(self.notes(&scene));

@@ -44,7 +44,7 @@ pub struct Options {
 /// What decides which triangle a pixel sees; all else is the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Raster {
-    /// A z-buffer: exact; see [`shade_again`].
+    /// The CPU; polygons by a z-buffer, see [`shade_again`].
     #[default]
     Cpu,
     /// The painter's algorithm by tiny-skia, which has its limits; see [`paint`]. For apparent shading.

@@ -187,14 +187,6 @@ impl Celerity {
     pub fn reversed(&self) -> Self {
         Self(-self.0)
     }
-
-    /// The same direction at another speed.
-    ///
-    /// # Errors
-    /// As [`from_gamma`](Self::from_gamma); in particular if this motion has no direction.
-    pub fn with_gamma(&self, gamma: f64) -> Result<Self, CelerityError> {
-        Self::from_gamma(gamma, self.0)
-    }
 }
 
 #[cfg(test)]

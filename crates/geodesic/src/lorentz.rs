@@ -85,12 +85,7 @@ impl<To, From, S: Real> Lorentz<To, From, S> {
         self.rows[0][0]
     }
 
-    /// Celerity with which a body at rest in `From` moves in `To`, in the axes of `To`.
-    pub fn celerity_in_to(&self) -> [S; 3] {
-        [self.rows[1][0], self.rows[2][0], self.rows[3][0]]
-    }
-
-    /// The same celerity in the axes of `From`: the map is this boost, then [`axes`](Self::axes).
+    /// Celerity with which a body at rest in `From` moves in `To`, in the axes of `From`: the map is this boost, then [`axes`](Self::axes).
     pub fn celerity_in_from(&self) -> [S; 3] {
         [self.rows[0][1], self.rows[0][2], self.rows[0][3]]
     }

@@ -258,9 +258,7 @@ impl Compare {
             });
             if let Ok(Drawn { report: Report { rays: Some(rays), .. }, .. }) = &done {
                 let dark = summary::dark_lights(&rays.to_lights, scene, &camera.observer);
-                if let Some(light) = dark.into_iter().find(|light| light.shut_in) {
-                    return Err(format!("'{}': {}; move it or take it away", scene.name, light.told).into());
-                }
+                summary::check_shut_in(&dark).map_err(|why| format!("'{}': {why}", scene.name))?;
             }
             drawn.push((way, done));
         }
