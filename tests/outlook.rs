@@ -41,7 +41,8 @@ fn explain_says_what_is_seen_and_draws_nothing() {
         bad(words, folder.path());
     }
     assert_eq!(std::fs::read_to_string(folder.path().join("my.toml")).unwrap(), toml);
-    assert!(good(&["explain", "gate", "--gamma", "1e6"], folder.path()).contains("note: "));
+    // What shadows need has too few digits there.
+    assert!(good(&["explain", "shadow", "--gamma", "1e6"], folder.path()).contains("note: "));
 }
 
 #[test]
