@@ -125,9 +125,9 @@ fn outlines_keep_the_tolerance() {
         let film = draw(&scene, &camera, Method::Apparent, Raster::Cpu);
         let found = Comparison::new(&reference, &film).unwrap();
         let most = Options::default().tolerance + 0.1 * 0.5f64.sqrt();
-        for (i, distance) in traced.to_outlines(&reference.film, &found.marks, 0.1, 10) {
+        for (i, distance) in traced.to_outlines(&reference.film, &found.marks, 0.1, 4) {
             if distance > most {
-                let at = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
+                let at = [i as u32 % film.width, i as u32 / film.width];
                 off.push(format!("{} {at:?} {:?} {distance:.2} px", scene.name, found.marks[i]));
             }
         }
