@@ -3,7 +3,7 @@
 use crate::color::Coloring;
 use crate::export::Surface;
 use crate::scene::{Aim, Body, Camera, Material, Mesh, Paint, Projection, Scene, Surface as Shines, View};
-use crate::transform::{Axes, Options, TransformError, transform};
+use crate::transform::{Axes, Observer, Options, TransformError, transform};
 use glam::{DVec2, DVec3};
 use terrell_geodesic::{Celerity, Event};
 
@@ -46,10 +46,10 @@ pub fn seen_from(
         || {
             let meshes = || shapes.iter().map(|(_, mesh)| mesh).chain([&marker]);
             let points = meshes().flat_map(|mesh| (0..mesh.vertex_count() as u32).map(|v| mesh.vertex(v)));
-            let aside = ahead(USUAL_SIDE).normalize();
+            let aside = Observer::turned(USUAL_SIDE).normalize();
             middle + aside * distance_for(points.map(|p| p - middle), aside, scene.view.size, fov_deg)
         },
-        ahead,
+        Observer::turned,
     );
     let mut bodies = vec![still("camera", marker)];
     bodies.extend(shapes.into_iter().map(|(name, mesh)| still(&name, mesh)));
@@ -82,11 +82,6 @@ fn distance_for(points: impl Iterator<Item = DVec3>, aside: DVec3, size: [u32; 2
     points.map(least).fold(1e-30, f64::max)
 }
 
-/// Right, up, ahead as right, up, backward: the axes of what comes out of [`Axes::Camera`].
-fn ahead(v: DVec3) -> DVec3 {
-    DVec3::new(v.x, v.y, -v.z)
-}
-
 fn still(name: &str, mesh: Mesh) -> Body {
     Body::new(name, mesh, crate::relativity::Motion::at_rest(DVec3::ZERO))
 }
@@ -114,7 +109,7 @@ fn marker(camera: &Camera, size: f64) -> Mesh {
         let [w, h] = [f64::from(lens.width()), f64::from(lens.height())];
         let corner = |x: f64, y: f64| {
             let direction = lens.direction(DVec2::new(x, y)).unwrap_or(DVec3::Z);
-            ahead(direction.normalize()) * size
+            Observer::turned(direction.normalize()) * size
         };
         let corners = [corner(0.0, 0.0), corner(w, 0.0), corner(w, h), corner(0.0, h)];
         let sides = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [1, 3, 2], [1, 4, 3]];
@@ -146,7 +141,7 @@ mod tests {
         let mut count = 0;
         for body in still.bodies.iter().filter(|body| body.name == "cube") {
             for vertex in (0..body.mesh.vertex_count() as u32).map(|v| body.mesh.vertex(v)) {
-                let (rest, _) = map.unsee(ahead(vertex));
+                let (rest, _) = map.unsee(Observer::turned(vertex));
                 let depth = (rest - low).min(high - rest).min_element();
                 assert!(depth.abs() < 1e-12, "{rest}");
                 count += 1;

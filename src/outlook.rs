@@ -29,7 +29,7 @@ pub struct Prospect {
     pub name: String,
     /// γβ of its motion relative to the camera; none in curved spacetime, where they are apart.
     pub celerity: Option<f64>,
-    /// The part of the picture it takes, by pixels of a small one.
+    /// The part of the picture it takes, by pixels.
     pub part: f64,
     /// Least and greatest Doppler factor in these; none if there are none.
     pub doppler: Option<[f64; 2]>,
@@ -65,7 +65,7 @@ const ACROSS_CURVED: u32 = 128;
 const STILL: f64 = 1e-9;
 
 impl Outlook {
-    /// Of a scene before a camera, as a small picture by its cheapest method shows it.
+    /// Of a scene before a camera, as a picture by its cheapest method shows it; a smaller one, if it is large.
     ///
     /// # Errors
     /// As [`render`].

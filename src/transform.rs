@@ -171,7 +171,7 @@ pub fn transform(
 }
 
 /// Someone whose axes x, y, −z are those of what comes out.
-struct Observer {
+pub(crate) struct Observer {
     tetrad: Tetrad,
     place: DVec3,
 }
@@ -187,8 +187,8 @@ impl Observer {
         })
     }
 
-    /// Components in the observer's (left-handed) axes to those of what comes out.
-    fn turned(v: DVec3) -> DVec3 {
+    /// Components in the observer's (left-handed) axes to those of what comes out, and back.
+    pub(crate) fn turned(v: DVec3) -> DVec3 {
         DVec3::new(v.x, v.y, -v.z)
     }
 }

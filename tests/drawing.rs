@@ -1,5 +1,8 @@
 //! What is drawn on top of pictures: true curves, hidden lines, captions; and the flags.
 
+#[path = "common/assertion.rs"]
+mod assertion;
+
 use assert_cmd::Command;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -212,13 +215,7 @@ fn a_caption_keeps_within_the_picture_and_off_the_middle() {
 }
 
 fn refused(arguments: &[&str], parts: &[&str]) {
-    let folder = tempfile::tempdir().unwrap();
-    let output = Command::cargo_bin("terrell").unwrap().current_dir(&folder).args(arguments).assert().code(2);
-    let message = String::from_utf8(output.get_output().stderr.clone()).unwrap();
-    for part in parts {
-        assert!(message.contains(part), "{arguments:?} says\n{message}which lacks '{part}'");
-    }
-    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0, "{arguments:?} left something behind");
+    assertion::refused(assertion::folder().path(), arguments, parts);
 }
 
 #[test]

@@ -14,7 +14,7 @@ use terrell::scene::{Camera, Scene};
 /// What will be seen of a scene and why: how fast, how large, how far, which Doppler factors, when each body passes; and the
 /// method that draws it
 ///
-/// A small picture is worked out for it; nothing is written. SCENE is as for `terrell render`.
+/// A picture is worked out for it; nothing is written. SCENE is as for `terrell render`.
 #[derive(Args)]
 #[command(after_help = "Examples:
   terrell explain cube
@@ -39,6 +39,7 @@ impl Explain {
         let why = self.look.choose(&mut options, &scene)?;
         let camera = scene.camera()?;
         scene.eye(&camera)?;
+        self.report.check_json(&scene.files)?;
         scene.notes.extend(summary::scene_notes(&scene, &options));
         let outlook = Outlook::new(&scene, &camera)?;
         tell(&scene, &[&camera], &options, why, Some(&outlook), &self.report)
@@ -67,7 +68,6 @@ pub fn tell(
     outlook: Option<&Outlook>,
     report: &ReportFlags,
 ) -> Result<(), Fault> {
-    report.check_json(&scene.files)?;
     if options.raster == Raster::Wgpu {
         // As drawing would.
         options.device(scene, cameras).map_err(|why| format!("no graphics processor draws this: {why}"))?;

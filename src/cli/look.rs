@@ -317,12 +317,12 @@ impl LookFlags {
         options.samples = self.samples.unwrap_or(usual);
     }
 
-    /// For what is drawn by a lens and colours of its own: the colouring, that if none is asked for, and no lens.
-    pub fn coloring_of_shapes(&self, usual: Coloring) -> Result<Coloring, Fault> {
+    /// For shapes seen from aside, by a lens of their own: their colouring, and that no lens is asked for.
+    pub fn coloring_of_shapes(&self) -> Result<Coloring, Fault> {
         if self.camera.is_some() {
             return Err("--detectors draws shapes by a pinhole; leave out --camera".into());
         }
-        Ok(self.color.map_or(usual, ColorFlag::coloring))
+        Ok(self.color.map_or(Coloring::Geometry, ColorFlag::coloring))
     }
 
     /// For what draws by several methods: that none of them is asked for.

@@ -70,7 +70,7 @@ impl Render {
         // What its colours stand for, where the picture is of shapes in the colours they are seen in.
         let mut shown = None;
         if let Some(from) = self.detectors {
-            let coloring = self.look.coloring_of_shapes(Coloring::Geometry)?;
+            let coloring = self.look.coloring_of_shapes()?;
             scene = self.recorded(&scene, from, coloring)?;
             options.coloring = Coloring::Geometry;
             shown = Some(coloring);
@@ -79,8 +79,8 @@ impl Render {
         let camera = scene.camera()?;
         // Better known before the work than after.
         scene.eye(&camera)?;
+        scene.notes.extend(summary::scene_notes(&scene, &options));
         if self.explain.is_asked() {
-            scene.notes.extend(summary::scene_notes(&scene, &options));
             return explain::tell(&scene, &[&camera], &options, why, None, &self.report);
         }
         let output = self.output.clone().unwrap_or_else(|| format!("{}.png", scene.name).into());
@@ -92,7 +92,6 @@ impl Render {
         let read = start.elapsed();
         let mut progress = Progress::new(self.report.quiet);
         let coloring = options.coloring;
-        scene.notes.extend(summary::scene_notes(&scene, &options));
         let mut film = Film::new(0, 0);
         let prepared = options.prepare(&scene, [&camera])?;
         let tables = start.elapsed() - read;

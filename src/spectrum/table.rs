@@ -199,12 +199,11 @@ impl DopplerTable {
     pub(crate) fn color_near(&self, ln_doppler: f64, own: [f32; 3], near: &mut Near) -> [f32; 3] {
         let (w, low) = self.place(ln_doppler);
         if near.low != low {
-            let nodes: &[Node; 4] = self.nodes[low..].first_chunk().unwrap_or(&[[[0.0; 4]; 3]; 4]);
-            let color = |[r, g, b]: &Node| {
-                let [r, g, b] = [r, g, b].map(|column| Vec4::from_array(*column));
-                r * own[0] + g * own[1] + b * own[2]
-            };
-            *near = Near { low, colors: [0, 1, 2, 3].map(|i| color(&nodes[i])) };
+            near.low = low;
+            for (color, node) in near.colors.iter_mut().zip(&self.nodes[low..low + 4]) {
+                let [r, g, b] = node.map(Vec4::from_array);
+                *color = r * own[0] + g * own[1] + b * own[2];
+            }
         }
         let [a, b, c, d] = near.colors;
         let sum = (a * w[0] + b * w[1]) + (c * w[2] + d * w[3]);

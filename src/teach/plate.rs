@@ -187,10 +187,7 @@ impl Plate {
                     Drawn { kind: Kind::Png, bytes },
                 ]
             }
-            What::Reel(reel) => {
-                let poster = (reel.open)()?(reel.frames / 2)?;
-                vec![Drawn { kind: Kind::Mp4, bytes: reel.film()? }, png(poster)?]
-            }
+            What::Reel(reel) => reel.film()?,
         })
     }
 }
@@ -293,17 +290,21 @@ impl Reel {
         Self { frames, fps, open: Box::new(open) }
     }
 
-    /// The film, as MP4.
-    fn film(&self) -> Result<Vec<u8>, TeachError> {
+    /// The film, as MP4, and the frame in its middle, to stand for it.
+    fn film(&self) -> Result<Vec<Drawn>, TeachError> {
         let frame = (self.open)()?;
-        let (width, height, first) = frame(0)?;
+        let mut poster = frame(0)?;
         let to = std::io::Cursor::new(Vec::new());
-        let mut movie = Movie::new(MovieFormat::Mp4, to, width, height, self.fps)?;
-        movie.push(&first)?;
+        let mut movie = Movie::new(MovieFormat::Mp4, to, poster.0, poster.1, self.fps)?;
+        movie.push(&poster.2)?;
         for i in 1..self.frames {
-            movie.push(&frame(i)?.2)?;
+            let pixels = frame(i)?;
+            movie.push(&pixels.2)?;
+            if i == self.frames / 2 {
+                poster = pixels;
+            }
         }
-        Ok(movie.finish()?.into_inner())
+        Ok(vec![Drawn { kind: Kind::Mp4, bytes: movie.finish()?.into_inner() }, png(poster)?])
     }
 }
 
