@@ -1,7 +1,8 @@
 //! Cost of exact and of apparent shading, the latter stage by stage, beside a linear pass (the same z-buffer over the same
 //! apparent vertices without cutting), and of rays: spheres of 1 k, 100 k and 1 M triangles at β = 0.9, 1280×720, tolerance ¼ px.
 //!
-//! `cargo bench --bench shading`; ratios of one run are the result, not the rates.
+//! `cargo bench --bench shading`; ratios of one run are the result, not the rates. `-- NAME` is for that mesh alone, and
+//! nothing else, as for a profile.
 
 use glam::DVec3;
 use std::time::Instant;
@@ -17,18 +18,10 @@ use terrell::scene::{Body, Camera, Lens, Light, LightKind, Material, Mesh, Proje
 use terrell::spectrum::Spectrum;
 use terrell::trace::{Look, Paths, Tracer};
 
-const REPEATS: usize = 9;
+const REPEATS: usize = 15;
 
 fn median_ms(mut run: impl FnMut()) -> f64 {
-    let mut times: Vec<f64> = (0..REPEATS)
-        .map(|_| {
-            let start = Instant::now();
-            run();
-            start.elapsed().as_secs_f64() * 1e3
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[REPEATS / 2]
+    medians_ms([&mut run])[0]
 }
 
 fn sphere(latitudes: u32) -> Mesh {
@@ -56,6 +49,22 @@ fn sphere(latitudes: u32) -> Mesh {
         materials: vec![Material { one_sided: true, ..Material::default() }],
         ..Mesh::new(&vertices, triangles)
     }
+}
+
+/// Milliseconds of each, in turns, so that what else the machine does falls on all of them alike.
+fn medians_ms<const N: usize>(mut runs: [&mut dyn FnMut(); N]) -> [f64; N] {
+    let mut times = [(); N].map(|()| Vec::with_capacity(REPEATS));
+    for _ in 0..REPEATS {
+        for (run, times) in runs.iter_mut().zip(&mut times) {
+            let start = Instant::now();
+            run();
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+    times.map(|mut times| {
+        times.sort_by(f64::total_cmp);
+        times[REPEATS / 2]
+    })
 }
 
 /// The vertices alone, halved until every thread has some.
@@ -87,7 +96,7 @@ fn main() {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
 
     println!(
-        "ms, median of {REPEATS}; 'linear' is map + the same z-buffer without cutting; 'once', what is done once a film"
+        "ms, median of {REPEATS}, in turns; 'linear' is map + the same z-buffer without cutting; 'once', what is done once a film"
     );
     println!(
         "{:>10} {:>7} {:>9} | {:>7} {:>9} {:>8} {:>8} | {:>8} {:>7} {:>7} {:>6} | {:>7} {:>7} {:>7} {:>7} | {:>7} {:>7}",
@@ -116,7 +125,13 @@ fn main() {
         ("", sphere(158)),
         ("", sphere(500)),
     ];
-    for (name, mesh) in &meshes {
+    let label = |name: &str, mesh: &Mesh| {
+        if name.is_empty() { mesh.triangles.len().to_string() } else { name.to_owned() }
+    };
+    let only = std::env::args().skip(1).find(|a| !a.starts_with('-'));
+    for (name, mesh) in
+        meshes.iter().filter(|(name, mesh)| only.as_ref().is_none_or(|o| label(name, mesh) == *o))
+    {
         for threads in [1, all] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
@@ -134,41 +149,47 @@ fn main() {
                 draw(&seen);
                 let pixels = film.borrow().body.len() as f64;
                 let hit = film.borrow().covered() as f64 / pixels;
-                let map_ms = median_ms(|| {
-                    let [x, y, z, distance, doppler] = &mut points;
-                    let rest = Points { x: &mesh.x, y: &mesh.y, z: &mesh.z };
-                    map_alone(&map, rest, PointsMut { x, y, z, distance, doppler });
-                });
-                let cut_ms = median_ms(|| drop(std::hint::black_box(cut())));
-                let draw_ms = median_ms(|| draw(&seen));
-                let whole = median_ms(|| draw(&cut()));
-                let linear = median_ms(|| draw(&ApparentMesh::linear(mesh, &map)));
-                let exact = |scene: &Scene| Tracer::exact(scene, 1);
-                let [exact, trace] = [exact, Tracer::new].map(|make| {
-                    let once = median_ms(|| drop(make(&scene)));
-                    let tracer = make(&scene);
-                    let look =
-                        Look { samples: samples.offsets(), shading: &shading, paths: Paths::default() };
-                    let camera = Camera { observer, lens };
-                    let film = &mut film.borrow_mut();
-                    (median_ms(|| drop(tracer.trace(&scene, &camera, &look, film, |_, _| ()))), once)
-                });
+                let [exact_once, trace_once] = [|s: &Scene| Tracer::exact(s, 1), Tracer::new]
+                    .map(|make: fn(&Scene) -> Tracer| median_ms(|| drop(make(&scene))));
+                let (exact, tracer) = (Tracer::exact(&scene, 1), Tracer::new(&scene));
+                let look = Look { samples: samples.offsets(), shading: &shading, paths: Paths::default() };
+                let camera = Camera { observer, lens };
+                let follow = |tracer: &Tracer| {
+                    tracer.trace(&scene, &camera, &look, &mut film.borrow_mut(), |_, _| ());
+                };
+                let [map_ms, cut_ms, draw_ms, whole, linear, exact_ms, trace_ms] = medians_ms([
+                    &mut || {
+                        let [x, y, z, distance, doppler] = &mut points;
+                        let rest = Points { x: &mesh.x, y: &mesh.y, z: &mesh.z };
+                        map_alone(&map, rest, PointsMut { x, y, z, distance, doppler });
+                    },
+                    &mut || drop(std::hint::black_box(cut())),
+                    &mut || draw(&seen),
+                    &mut || draw(&cut()),
+                    &mut || draw(&ApparentMesh::linear(mesh, &map)),
+                    &mut || follow(&exact),
+                    &mut || follow(&tracer),
+                ]);
                 println!(
                     "{:>10} {threads:>7} {:>9} | {map_ms:>7.2} {cut_ms:>9.2} {draw_ms:>8.2} {whole:>8.2} | {linear:>8.2} {:>7.1} {:>7.1} {:>5.0}% | {:>7.2} {:>7.2} {:>7.2} {:>7.2} | {:>7.2} {:>7.2}",
-                    if name.is_empty() { mesh.triangles.len().to_string() } else { (*name).to_owned() },
+                    label(name, mesh),
                     seen.triangles.len(),
                     mesh.triangles.len() as f64 / linear / 1e3,
                     pixels / linear / 1e3,
                     100.0 * hit,
-                    exact.0,
-                    exact.0 / linear,
-                    whole / exact.0,
-                    exact.1,
-                    trace.0,
-                    trace.1,
+                    exact_ms,
+                    exact_ms / linear,
+                    whole / exact_ms,
+                    exact_once,
+                    trace_ms,
+                    trace_once,
                 );
             });
         }
+    }
+
+    if only.is_some() {
+        return;
     }
 
     println!(
@@ -191,7 +212,7 @@ fn main() {
                 let painted = median_ms(|| drop(paint(&bodies, &lens, &samples, shading).unwrap()));
                 println!(
                     "{:>10} {threads:>7} {:>9} | {shaded:>8.2} {painted:>8.2} {:>6.2}",
-                    if name.is_empty() { mesh.triangles.len().to_string() } else { (*name).to_owned() },
+                    label(name, mesh),
                     seen.triangles.len(),
                     painted / shaded,
                 );

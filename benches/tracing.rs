@@ -1,8 +1,8 @@
 //! How fast rays are: millions a second on one core, from the camera and to a lamp, with and without AVX2, on the gate
 //! and on spheres of triangles, all moving at 0.9c.
 //!
-//! `cargo bench --bench tracing`; with `-- --dump DIR` it writes the meshes and the rays for other programs instead (see
-//! benches/peers/embree.cpp).
+//! `cargo bench --bench tracing`, or `-- NAME` for that mesh alone, as for a profile; with `-- --dump DIR` it writes the
+//! meshes and the rays for other programs instead (see benches/peers/embree.cpp).
 
 use glam::{DVec2, DVec3};
 use std::path::Path;
@@ -16,7 +16,7 @@ use terrell::scene::{Body, Camera, Lens, Light, LightKind, Mesh, Projection, Sce
 use terrell::spectrum::Spectrum;
 use terrell::trace::{Look, Paths, Tracer};
 
-const REPEATS: usize = 7;
+const REPEATS: usize = 15;
 
 /// A ball of radius 1 of n × 2n rectangles, cut in two.
 fn sphere(n: usize) -> Mesh {
@@ -39,16 +39,20 @@ fn sphere(n: usize) -> Mesh {
     Mesh::new(&vertices, triangles)
 }
 
-fn median_seconds(mut run: impl FnMut()) -> f64 {
-    let mut times: Vec<f64> = (0..REPEATS)
-        .map(|_| {
+/// Seconds of each, in turns, so that what else the machine does falls on all of them alike.
+fn median_seconds<const N: usize>(mut runs: [&mut dyn FnMut(); N]) -> [f64; N] {
+    let mut times = [(); N].map(|()| Vec::with_capacity(REPEATS));
+    for _ in 0..REPEATS {
+        for (run, times) in runs.iter_mut().zip(&mut times) {
             let start = Instant::now();
             run();
-            start.elapsed().as_secs_f64()
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[REPEATS / 2]
+            times.push(start.elapsed().as_secs_f64());
+        }
+    }
+    times.map(|mut times| {
+        times.sort_by(f64::total_cmp);
+        times[REPEATS / 2]
+    })
 }
 
 /// NAME.mesh: three corners a triangle. NAME.primary, NAME.shadow: origin, direction and length of every ray, tile by tile.
@@ -120,7 +124,7 @@ fn main() {
         strength: 1.0,
         motion,
     };
-    println!("one thread, 1280x720 rays, median of {REPEATS}; M rays/s");
+    println!("one thread, 1280x720 rays, median of {REPEATS}, in turns; M rays/s");
     println!(
         "{:>10} {:>10} | {:>9} {:>9} {:>8} | {:>9} {:>9} | {:>10}",
         "triangles", "build ms", "primary", "base", "hit", "shadow", "base", "picture ms"
@@ -132,9 +136,12 @@ fn main() {
         ("", sphere(158)),
         ("", sphere(500)),
     ] {
+        let label = if name.is_empty() { mesh.triangles.len().to_string() } else { name.to_owned() };
+        if dump.is_none() && arguments[1..].iter().any(|a| !a.starts_with('-') && *a != label) {
+            continue;
+        }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         pool.install(|| {
-            let label = if name.is_empty() { mesh.triangles.len().to_string() } else { name.to_owned() };
             let mut scene = Scene::new("s", vec![Body::new("m", mesh.clone(), motion)], View::default());
             let start = Instant::now();
             let tracer = Tracer::new(&scene);
@@ -148,25 +155,22 @@ fn main() {
                 write_rays(folder, &label, &scene, &camera, &tracer, &luminous, &lit).unwrap();
                 return;
             }
-            let mut primary = [0.0; 2];
-            let mut shadow = [0.0; 2];
-            for (i, tracer) in [&tracer, &base].into_iter().enumerate() {
-                let count = tracer.cast(&scene, &camera, samples.offsets(), &luminous).primary as f64;
-                let seconds = median_seconds(|| {
-                    tracer.cast(&scene, &camera, samples.offsets(), &luminous);
-                });
-                primary[i] = count / seconds * 1e-6;
-                let count = tracer.cast(&scene, &camera, samples.offsets(), &lit).shadow as f64;
-                let both = median_seconds(|| {
-                    tracer.cast(&scene, &camera, samples.offsets(), &lit);
-                });
-                shadow[i] = count / (both - seconds) * 1e-6;
-            }
+            let cast = |tracer: &Tracer, shading: &SeenShading<'_>| {
+                tracer.cast(&scene, &camera, samples.offsets(), shading)
+            };
+            let count = cast(&tracer, &lit);
             let mut film = Film::new(0, 0);
             let look = Look { samples: samples.offsets(), shading: &luminous, paths: Paths::default() };
-            let picture = median_seconds(|| {
-                tracer.trace(&scene, &camera, &look, &mut film, |_, _| ());
-            });
+            let [seconds, base_seconds, both, base_both, picture] = median_seconds([
+                &mut || _ = cast(&tracer, &luminous),
+                &mut || _ = cast(&base, &luminous),
+                &mut || _ = cast(&tracer, &lit),
+                &mut || _ = cast(&base, &lit),
+                &mut || _ = tracer.trace(&scene, &camera, &look, &mut film, |_, _| ()),
+            ]);
+            let rates = |count: u64, seconds: [f64; 2]| seconds.map(|s| count as f64 / s * 1e-6);
+            let primary = rates(count.primary, [seconds, base_seconds]);
+            let shadow = rates(count.shadow, [both - seconds, base_both - base_seconds]);
             println!(
                 "{label:>10} {build:>10.0} | {:>9.1} {:>9.1} {:>7.0}% | {:>9.1} {:>9.1} | {:>10.1}",
                 primary[0],

@@ -83,6 +83,18 @@ pub fn encoded(linear: f32) -> u8 {
     ENCODING.of(linear)
 }
 
+/// [`encoded`] for many.
+///
+/// # Panics
+/// If the slices differ in length.
+pub(crate) fn encode(linear: &[f32], encoded: &mut [u8]) {
+    assert_eq!(linear.len(), encoded.len());
+    let encoding = &*ENCODING;
+    for (linear, encoded) in linear.iter().zip(encoded) {
+        *encoded = encoding.of(*linear);
+    }
+}
+
 fn encoded_by_formula(linear: f32) -> u8 {
     // A cast of NaN is 0.
     let v = linear.clamp(0.0, 1.0);
@@ -90,51 +102,40 @@ fn encoded_by_formula(linear: f32) -> u8 {
     (255.0 * encoded + 0.5) as u8
 }
 
-/// The formula as a table, as exact and ten times as fast: the least value of every code, and for every 256th of an
-/// octave the code at its beginning, where to look.
-struct Encoding {
-    least: [f32; 257],
-    codes: Vec<u8>,
-}
+/// The formula as a table, as exact and many times as fast. For every 128th of an octave, in which at most one code begins:
+/// the code before that in the upper 16 bits, and in the lower what, added to the lower 16 bits of a number, is carried into
+/// them if it has got there.
+struct Encoding([u32; 2048]);
 
 /// Below it everything is code 0.
 const DARKEST: f32 = 1.0 / 8192.0;
 
 static ENCODING: LazyLock<Encoding> = LazyLock::new(|| {
-    let mut least = [f32::INFINITY; 257];
-    for (code, least) in least.iter_mut().enumerate().take(256) {
-        // Bits of positive floats are in the order of their values.
-        let (mut low, mut high) = (0, 1f32.to_bits());
+    // Bits of positive floats are in the order of their values.
+    let code = |bits: u32| u32::from(encoded_by_formula(f32::from_bits(bits)));
+    let part = |step: u32| {
+        let start = DARKEST.to_bits() + (step << 16);
+        let (mut low, mut high) = (0, 1 << 16);
+        // How far into it the code is the same as at its beginning.
         while low < high {
-            let middle = low + (high - low) / 2;
-            if usize::from(encoded_by_formula(f32::from_bits(middle))) < code {
-                low = middle + 1
-            } else {
-                high = middle
-            }
+            let middle = (low + high) / 2;
+            if code(start + middle) > code(start) { high = middle } else { low = middle + 1 }
         }
-        *least = f32::from_bits(low);
-    }
-    let steps = (1f32.to_bits() - DARKEST.to_bits()) >> 15;
-    let start = |step: u32| encoded_by_formula(f32::from_bits(DARKEST.to_bits() + (step << 15)));
-    Encoding { least, codes: (0..=steps).map(start).collect() }
+        (code(start) << 16) + ((1 << 16) - low)
+    };
+    let steps = (1f32.to_bits() - DARKEST.to_bits()) >> 16;
+    Encoding(std::array::from_fn(|step| part((step as u32).min(steps))))
 });
 
 impl Encoding {
-    #[inline]
+    #[inline(always)]
     fn of(&self, linear: f32) -> u8 {
-        if linear >= 1.0 {
-            return 255;
-        }
-        // NaN, too.
-        if linear <= DARKEST || linear.is_nan() {
-            return 0;
-        }
-        let mut code = self.codes[((linear.to_bits() - DARKEST.to_bits()) >> 15) as usize];
-        while linear >= self.least[usize::from(code) + 1] {
-            code += 1;
-        }
-        code
+        // NaN is as dark as can be.
+        let v = if linear > DARKEST { linear } else { DARKEST };
+        let v = if v < 1.0 { v } else { 1.0 };
+        let place = v.to_bits() - DARKEST.to_bits();
+        let part = self.0[(place >> 16) as usize % self.0.len()];
+        ((part + (place & 0xffff)) >> 16) as u8
     }
 }
 
@@ -161,7 +162,7 @@ mod tests {
         assert_eq!(encoded(7.0), 255);
         assert_eq!(encoded(-1.0), 0);
         // The table is the formula, to the bit.
-        for bits in (0..0x4000_0000u32).step_by(977) {
+        for bits in (0..0x4000_0000u32).step_by(97) {
             let v = f32::from_bits(bits);
             assert_eq!(encoded(v), encoded_by_formula(v), "{v}");
         }

@@ -54,13 +54,6 @@ impl Samples {
     }
 }
 
-/// So many of one value, by all threads.
-fn cleared<T: Copy + Send + Sync>(values: &mut Vec<T>, count: usize, value: T) {
-    values.truncate(count);
-    values.par_chunks_mut(1 << 16).for_each(|values| values.fill(value));
-    values.resize(count, value);
-}
-
 /// Some rows of a film, to be filled.
 pub(crate) struct Rows<'a> {
     pub color: &'a mut [[f32; 3]],
@@ -68,6 +61,17 @@ pub(crate) struct Rows<'a> {
     pub doppler: &'a mut [f32],
     pub body: &'a mut [i32],
     pub face: &'a mut [i32],
+}
+
+impl Rows<'_> {
+    /// Takes off everything.
+    pub fn clear(&mut self) {
+        self.color.fill([0.0; 3]);
+        self.distance.fill(0.0);
+        self.doppler.fill(0.0);
+        self.body.fill(NOTHING);
+        self.face.fill(NOTHING);
+    }
 }
 
 /// Body and face of a pixel where nothing is seen, or the sky.
@@ -103,15 +107,19 @@ impl Film {
 
     /// Takes off everything, and takes the given size; what memory there is stays.
     pub fn clear(&mut self, width: u32, height: u32) {
+        self.resize(width, height);
+        self.bands(16).for_each(|mut rows| rows.clear());
+    }
+
+    /// Takes the given size. What was there stays, to be cleared by who draws a part, which is quicker than all at once.
+    pub(crate) fn resize(&mut self, width: u32, height: u32) {
         (self.width, self.height) = (width, height);
         let pixels = width as usize * height as usize;
-        cleared(&mut self.color, pixels, [0.0; 3]);
-        for values in [&mut self.distance, &mut self.doppler] {
-            cleared(values, pixels, 0.0);
-        }
-        for indices in [&mut self.body, &mut self.face] {
-            cleared(indices, pixels, NOTHING);
-        }
+        self.color.resize(pixels, [0.0; 3]);
+        self.distance.resize(pixels, 0.0);
+        self.doppler.resize(pixels, 0.0);
+        self.body.resize(pixels, NOTHING);
+        self.face.resize(pixels, NOTHING);
     }
 
     /// The film in bands of so many rows, to be filled by all threads.

@@ -2,7 +2,6 @@
 
 use crate::color::linear_of;
 use crate::spectrum::luminance;
-use glam::Vec3A;
 
 /// How light becomes a picture of values from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,22 +83,23 @@ impl Default for Development {
 impl Development {
     /// What is shown of linear light, linear too, from 0 to 1 (NaN is 0 when it is encoded).
     pub fn shown(&self, light: [f32; 3]) -> [f32; 3] {
-        self.curve()(light)
+        let mut shown = [light];
+        self.show(&mut shown);
+        shown[0]
     }
 
-    /// [`shown`](Self::shown) for many colours.
-    pub fn curve(&self) -> impl Fn([f32; 3]) -> [f32; 3] + Sync + use<> {
-        let (factor, tone) = (self.ev.exp2(), self.tone);
-        move |light| {
-            if light == [0.0; 3] {
-                return light;
-            }
-            let [r, g, b] = within_gamut([light[0] * factor, light[1] * factor, light[2] * factor]);
-            match tone {
-                Tone::Linear => [r, g, b],
-                Tone::Filmic => filmic(Vec3A::new(r, g, b)).to_array(),
-                Tone::Log => logarithmic([r, g, b]),
-            }
+    /// [`shown`](Self::shown) for many colours, each in the place of the light.
+    pub fn show(&self, colors: &mut [[f32; 3]]) {
+        let factor = self.ev.exp2();
+        colors.as_flattened_mut().iter_mut().for_each(|v| *v *= factor);
+        if colors.as_flattened().iter().any(|v| *v < 0.0) {
+            colors.iter_mut().for_each(|color| *color = within_gamut(*color));
+        }
+        match self.tone {
+            Tone::Linear => {}
+            // In a loop of plain arithmetic, which compilers make vectors of.
+            Tone::Filmic => colors.as_flattened_mut().iter_mut().for_each(|v| *v = filmic(*v)),
+            Tone::Log => colors.iter_mut().for_each(|color| *color = logarithmic(*color)),
         }
     }
 }
@@ -120,10 +120,11 @@ fn within_gamut(color: [f32; 3]) -> [f32; 3] {
 }
 
 #[inline]
-fn filmic(v: Vec3A) -> Vec3A {
+fn filmic(v: f32) -> f32 {
     // Far above, where squares would be too large, it is what it tends to.
-    let v = v.min(Vec3A::splat(1e4));
-    (v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14)).max(Vec3A::ZERO).min(Vec3A::ONE)
+    let v = if v > 1e4 { 1e4 } else { v };
+    let shown = v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14);
+    if shown > 1.0 { 1.0 } else { shown }
 }
 
 fn logarithmic(color: [f32; 3]) -> [f32; 3] {

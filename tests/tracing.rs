@@ -229,7 +229,7 @@ fn a_small_luminous_ball_is_a_lamp() {
                 strength: 100.0 * area,
                 motion,
             });
-            let (expected, _) = traced(&scene, coloring, 1, 0);
+            let (expected, _) = traced(&scene, coloring, 64, 0);
             scene.lights.clear();
             let ball = shapes::sphere(3).placed(&DAffine3::from_scale(DVec3::splat(RADIUS)));
             let glow =

@@ -151,13 +151,7 @@ impl<'a> Facet<'a> {
 /// Whether a direction *on* a plane belongs to this side: of the two triangles at an edge, one.
 #[inline(always)]
 pub(crate) fn owns_boundary(m: DVec3) -> bool {
-    if m.x != 0.0 {
-        m.x > 0.0
-    } else if m.y != 0.0 {
-        m.y > 0.0
-    } else {
-        m.z > 0.0
-    }
+    (m.x > 0.0) | ((m.x == 0.0) & ((m.y > 0.0) | ((m.y == 0.0) & (m.z > 0.0))))
 }
 
 /// Barycentric coordinates of a point of the triangle near one beside it.

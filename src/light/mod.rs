@@ -8,6 +8,7 @@ mod ambient;
 mod facet;
 pub(crate) mod gloss;
 mod incidence;
+mod logarithm;
 mod point;
 mod points;
 mod seen;
@@ -17,6 +18,7 @@ mod trail;
 
 pub use facet::Facet;
 pub(crate) use facet::{clamped, owns_boundary};
+pub(crate) use logarithm::logarithms;
 pub use point::Point;
 pub(crate) use points::{POINTS, Points, Ways, component, vector};
 pub use seen::{Approach, SeenShading};

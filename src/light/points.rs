@@ -1,5 +1,5 @@
+use super::SeenShading;
 use super::incidence::{Incidence, NearLight};
-use super::{Facet, SeenShading};
 use glam::DVec3;
 use terrell_geodesic::{FourVector, Rest};
 
@@ -47,14 +47,13 @@ impl Default for Ways {
 }
 
 impl Points {
-    /// One more, which is seen directly.
+    /// One more, which is seen directly, with the normal there: of any length, on the side that is seen.
     #[inline]
-    pub fn push(&mut self, facet: &Facet<'_>, at: DVec3) {
+    pub fn push(&mut self, face: usize, at: DVec3, normal: DVec3) {
         let i = self.count;
         self.count += 1;
-        self.faces[i] = facet.face() as u32;
+        self.faces[i] = face as u32;
         self.events[0][i] = -at.length();
-        let normal = facet.normal_seen(at);
         for k in 0..3 {
             self.events[k + 1][i] = at[k];
             self.normals[k][i] = normal[k];
@@ -178,7 +177,7 @@ impl NearLight {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Shading;
+    use super::super::{Facet, Shading};
     use super::*;
     use crate::color::Coloring;
     use crate::relativity::Motion;
@@ -227,7 +226,7 @@ mod tests {
                     (Facet::new(mesh, face, corners), at)
                 })
                 .collect();
-            facets.iter().for_each(|(facet, at)| points.push(facet, *at));
+            facets.iter().for_each(|(facet, at)| points.push(facet.face(), *at, facet.normal_seen(*at)));
             for (light, vectors) in (0..5).flat_map(|l| [(l, false), (l, true)]) {
                 seen.ways(0, light, &points, &mut ways, vectors);
                 for (i, (facet, at)) in facets.iter().enumerate() {

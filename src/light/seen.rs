@@ -1,5 +1,6 @@
 use super::ambient::Irradiance;
 use super::incidence::{Incidence, NearLight};
+use super::logarithm::ln;
 use super::shading::{MaterialShading, SceneLight, times};
 use super::{DopplerAt, Point, Shading, Source, gloss};
 use crate::color::{Coloring, false_color};
@@ -110,10 +111,10 @@ pub(crate) struct Glow<'a> {
 }
 
 impl Glow<'_> {
-    /// What of it is seen.
+    /// What of it is seen at a Doppler factor; its logarithm matters only for spectra.
     #[inline]
-    pub fn radiance(&mut self, doppler: f64) -> [f32; 3] {
-        finite(self.material.shines_near(self.coloring, doppler, self.own, &mut self.near))
+    pub fn radiance(&mut self, doppler: f64, logarithm: f64) -> [f32; 3] {
+        finite(self.material.shines_near(self.coloring, doppler, logarithm, self.own, &mut self.near))
     }
 }
 
@@ -218,10 +219,10 @@ impl<'a> SeenShading<'a> {
             return finite(false_color(doppler));
         }
         let colors = colors();
-        if let Some(mut glow) = self.glow(body, material, &colors) {
-            return glow.radiance(doppler);
-        }
         let material = &self.shading.bodies[body].materials[material];
+        if material.is_even() {
+            return finite(material.shines(coloring, doppler, colors.sum()));
+        }
         finite(self.at_point(body, material, doppler, colors, &point(), reaches))
     }
 
@@ -230,7 +231,7 @@ impl<'a> SeenShading<'a> {
     pub(crate) fn glow(&self, body: usize, material: usize, colors: &Colors) -> Option<Glow<'a>> {
         let coloring = self.shading.coloring;
         let material = &self.shading.bodies[body].materials[material];
-        let even = coloring != Coloring::Doppler && !material.lit && material.law == EmissionLaw::Isotropic;
+        let even = coloring != Coloring::Doppler && material.is_even();
         even.then(|| Glow { coloring, material, own: colors.sum(), near: Near::default() })
     }
 
@@ -422,38 +423,35 @@ impl Arriving {
 }
 
 impl MaterialShading {
+    /// Whether it only shines by itself, and alike in all directions.
+    #[inline]
+    fn is_even(&self) -> bool {
+        !self.lit && self.law == EmissionLaw::Isotropic
+    }
+
     /// What is seen of the surface's own light of the colour `own`.
     #[inline]
     fn shines(&self, coloring: Coloring, doppler: f64, own: [f32; 3]) -> [f32; 3] {
-        self.shines_near(coloring, doppler, own, &mut Near::default())
+        let logarithm = if coloring == Coloring::Spectral { ln(doppler) } else { 0.0 };
+        self.shines_near(coloring, doppler, logarithm, own, &mut Near::default())
     }
 
-    /// The same, `near` where its table was looked at last for this colour.
+    /// The same; the logarithm matters only for spectra, and `near` is where the table was looked at last for this colour.
     #[inline]
-    fn shines_near(&self, coloring: Coloring, doppler: f64, own: [f32; 3], near: &mut Near) -> [f32; 3] {
+    fn shines_near(
+        &self,
+        coloring: Coloring,
+        doppler: f64,
+        logarithm: f64,
+        own: [f32; 3],
+        near: &mut Near,
+    ) -> [f32; 3] {
         match (&self.own, coloring) {
-            (Some(table), Coloring::Spectral) => table.color_near(ln(doppler), own, near),
+            (Some(table), Coloring::Spectral) => table.color_near(logarithm, own, near),
             (_, Coloring::Bolometric) => beamed(coloring, doppler, own.map(|v| v * self.strength)),
             _ => beamed(coloring, doppler, times(&self.unshifted, own)),
         }
     }
-}
-
-/// Of a Doppler factor, as exact as tables need: 10⁻¹⁰.
-#[inline]
-fn ln(doppler: f64) -> f64 {
-    if !(f64::MIN_POSITIVE..=f64::MAX).contains(&doppler) {
-        return doppler.ln();
-    }
-    // A power of two times m between √½ and √2.
-    let bits = doppler.to_bits();
-    let power = bits.wrapping_sub(std::f64::consts::FRAC_1_SQRT_2.to_bits()) as i64 >> 52;
-    let m = f64::from_bits(bits.wrapping_sub((power << 52) as u64));
-    // ln m = 2 artanh s, by its series.
-    let s = (m - 1.0) / (m + 1.0);
-    let q = s * s;
-    let series = q * (1.0 / 3.0 + q * (1.0 / 5.0 + q * (1.0 / 7.0 + q * (1.0 / 9.0 + q * (1.0 / 11.0)))));
-    power as f64 * std::f64::consts::LN_2 + 2.0 * (s + s * series)
 }
 
 /// Beaming without colour: I_ν/ν³ is invariant (Nollert et al. 2000, Eq. 5), so a spectrum flat in ν is D³ times as
@@ -474,25 +472,6 @@ fn beamed(coloring: Coloring, doppler: f64, unshifted: [f32; 3]) -> [f32; 3] {
 #[inline]
 fn finite(color: [f32; 3]) -> [f32; 3] {
     const MOST: f32 = 1e35;
-    // NaN becomes the least, and is taken out first.
+    // NaN is 0.
     color.map(|v| if v.is_nan() { 0.0 } else { v.clamp(-MOST, MOST) })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::ln;
-
-    #[test]
-    fn logarithms_are_as_exact_as_tables_need() {
-        let mut x = 1e-300;
-        while x < 1e300 {
-            // The first term that is left out, q⁶/13, with √2 the worst.
-            assert!((ln(x) - x.ln()).abs() < 1e-10, "{x}");
-            x *= 1.0137;
-        }
-        for x in [1.0, 0.5, 2.0, std::f64::consts::SQRT_2, f64::MIN_POSITIVE, f64::MAX, f64::INFINITY, 0.0] {
-            assert!(ln(x) == x.ln() || (ln(x) - x.ln()).abs() < 1e-10, "{x}");
-        }
-        assert!(ln(f64::NAN).is_nan() && ln(-1.0).is_nan());
-    }
 }

@@ -1,4 +1,4 @@
-use crate::color::encoded;
+use crate::color::{encode, encoded};
 use crate::film::{FLAGGED, Film};
 use crate::tone::Development;
 use rayon::prelude::*;
@@ -7,11 +7,15 @@ use std::io::Write;
 /// The film as 8-bit sRGB, three bytes a pixel: developed, clipped to 0…1 and encoded (IEC 61966-2-1).
 pub fn pixels_srgb(film: &Film, development: &Development) -> Vec<u8> {
     let mut pixels = vec![0; 3 * film.color.len()];
-    let (block, shown) = (3 * 4096, development.curve());
-    pixels.par_chunks_mut(block).zip(film.color.par_chunks(block / 3)).for_each(|(pixels, colors)| {
-        for (pixel, color) in pixels.chunks_exact_mut(3).zip(colors) {
-            let [r, g, b] = shown(*color);
-            (pixel[0], pixel[1], pixel[2]) = (encoded(r), encoded(g), encoded(b));
+    const BLOCK: usize = 256;
+    let blocks = pixels.par_chunks_mut(3 * BLOCK).zip(film.color.par_chunks(BLOCK));
+    blocks.with_min_len(16).for_each(|(pixels, colors)| {
+        // Black stays black.
+        if colors.as_flattened().iter().any(|v| *v != 0.0) {
+            let shown = &mut [[0.0; 3]; BLOCK][..colors.len()];
+            shown.copy_from_slice(colors);
+            development.show(shown);
+            encode(shown.as_flattened(), pixels);
         }
     });
     // At any exposure.

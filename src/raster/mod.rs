@@ -58,13 +58,16 @@ pub fn shade_again(
     shading: &SeenShading<'_>,
     film: &mut Film,
 ) {
-    film.clear(lens.width(), lens.height());
+    film.resize(lens.width(), lens.height());
     draw(bodies, lens, samples, shading, film);
 }
 
 fn draw(bodies: &[Drawable<'_>], lens: &Lens, samples: &Samples, shading: &SeenShading<'_>, film: &mut Film) {
     let bins = bins::Bins::new(bodies, lens, samples);
-    each_band(film, |band, top, out| band.draw(bodies, &bins, lens, samples, shading, top, out));
+    each_band(film, |band, top, mut out| {
+        out.clear();
+        band.draw(bodies, &bins, lens, samples, shading, top, out);
+    });
 }
 
 /// Has the film's rows filled, a band of them a task; with the number of its first row.

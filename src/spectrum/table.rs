@@ -19,18 +19,39 @@ pub struct DopplerTable {
     error: f64,
 }
 
-/// Four nodes of a table times one colour.
+/// Four nodes of a table times one colour, as the cubic through them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Near {
     /// The number of the first.
     low: usize,
-    colors: [Vec4; 4],
+    /// Of the powers of how many steps beyond the second.
+    powers: [Vec4; 4],
 }
 
 impl Default for Near {
     /// None.
     fn default() -> Self {
-        Self { low: usize::MAX, colors: [Vec4::ZERO; 4] }
+        Self { low: usize::MAX, powers: [Vec4::ZERO; 4] }
+    }
+}
+
+impl Near {
+    fn new(low: usize, nodes: &[Node], own: [f32; 3]) -> Self {
+        let color = |i: usize| {
+            let [r, g, b] = nodes[i].map(Vec4::from_array);
+            r * own[0] + g * own[1] + b * own[2]
+        };
+        let [a, b, c, d] = [color(0), color(1), color(2), color(3)];
+        const SIXTH: f32 = 1.0 / 6.0;
+        let second = 0.5 * (a + c) - b;
+        let third = SIXTH * (d - a) + 0.5 * (b - c);
+        Self { low, powers: [b, c - b - second - third, second, third] }
+    }
+
+    #[inline]
+    fn at(&self, t: f32) -> Vec4 {
+        let [one, first, second, third] = self.powers;
+        one + t * (first + t * (second + t * third))
     }
 }
 
@@ -170,20 +191,22 @@ impl DopplerTable {
         Self::of_nodes(self.grid(), &nodes, self.error)
     }
 
-    /// Weights of four nodes, and the number of the first. Beyond its ends a table stays as it is there.
+    /// How many steps beyond the second of four nodes, and the number of the first. Beyond its ends a table stays as it is
+    /// there.
     #[inline]
-    fn place(&self, ln_doppler: f64) -> ([f32; 4], usize) {
+    fn place(&self, ln_doppler: f64) -> (f64, usize) {
         let last = (self.nodes.len() - 3) as f64;
         let place = (ln_doppler - self.start) * self.inverse_step;
         // NaN becomes the first.
         let within = place.max(0.0).min(last);
         let low = (within as usize).min(self.nodes.len() - 4);
-        (weights(within - low as f64), low)
+        (within - low as f64, low)
     }
 
     /// The nine numbers at ln D: columns for red, green and blue.
     pub fn at(&self, ln_doppler: f64) -> [f32; 9] {
-        let (w, low) = self.place(ln_doppler);
+        let (t, low) = self.place(ln_doppler);
+        let w = weights(t);
         let nodes = &self.nodes[low..low + 4];
         std::array::from_fn(|k| nodes.iter().zip(w).map(|(node, w)| w * node[k / 3][k % 3]).sum())
     }
@@ -197,17 +220,12 @@ impl DopplerTable {
     /// The same, of a surface of one colour asked over and over: what is `near` is kept for the next time.
     #[inline]
     pub(crate) fn color_near(&self, ln_doppler: f64, own: [f32; 3], near: &mut Near) -> [f32; 3] {
-        let (w, low) = self.place(ln_doppler);
+        let (t, low) = self.place(ln_doppler);
         if near.low != low {
-            near.low = low;
-            for (color, node) in near.colors.iter_mut().zip(&self.nodes[low..low + 4]) {
-                let [r, g, b] = node.map(Vec4::from_array);
-                *color = r * own[0] + g * own[1] + b * own[2];
-            }
+            *near = Near::new(low, &self.nodes[low..low + 4], own);
         }
-        let [a, b, c, d] = near.colors;
-        let sum = (a * w[0] + b * w[1]) + (c * w[2] + d * w[3]);
-        [sum.x, sum.y, sum.z]
+        let color = near.at(t as f32);
+        [color.x, color.y, color.z]
     }
 
     /// ln D of the second node, nodes a unit of ln D, and three columns a node.

@@ -1,12 +1,12 @@
 //! Rays of neighbouring pixels, which begin in one point, together.
 
 use super::directed::Directed;
-use super::edges::{Each, Edges, Several, TOGETHER, Window};
+use super::edges::{Each, EachNarrow, Several, TOGETHER, Window};
 use super::lanes::Lanes;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::x86;
 use super::origin::Origin;
-use super::tree::{Leaf, Node, Tree};
+use super::tree::{Branch, EachBox, Leaf, Part, Tree, WIDE};
 use glam::DVec3;
 
 /// The most rays of a beam.
@@ -38,7 +38,7 @@ pub(super) struct Beam {
     rays: Rays,
     /// How many there are, filled up to whole vectors.
     count: usize,
-    stack: Vec<(u32, f64)>,
+    stack: Vec<Part>,
 }
 
 #[repr(align(64))]
@@ -192,37 +192,22 @@ impl Beam {
         let mut farthest = self.farthest(place);
         let mut stack = std::mem::take(&mut self.stack);
         stack.clear();
-        if let Some(near) = tree.nodes.first().and_then(|root| boxes.enters(root)) {
-            stack.push((0, near));
-        }
+        stack.extend(tree.root().map(|inside| Part { near: 0.0, inside }));
         // Leaves that wait for others.
         let (mut waiting, mut count) = ([0; TOGETHER], 0);
-        while let Some((index, near)) = stack.pop() {
+        while let Some(Part { near, inside }) = stack.pop() {
             if near > farthest {
                 continue;
             }
-            let node = &tree.nodes[index as usize];
-            if node.count == 0 {
-                let first = node.first;
-                let [one, other] = [&tree.nodes[first as usize], &tree.nodes[first as usize + 1]];
-                let (a, b) = (boxes.enters(one), boxes.enters(other));
-                if a.is_some() {
-                    tree.fetch(one);
+            let leaves = match tree.look(inside) {
+                Ok(branch) => {
+                    let (near, met) = boxes.enter(branch);
+                    tree.push(branch, &near, met, &mut stack);
+                    continue;
                 }
-                if b.is_some() {
-                    tree.fetch(other);
-                }
-                match (a, b) {
-                    // The nearer one on top.
-                    (Some(a), Some(b)) if a <= b => stack.extend([(first + 1, b), (first, a)]),
-                    (Some(a), Some(b)) => stack.extend([(first, a), (first + 1, b)]),
-                    (Some(a), None) => stack.push((first, a)),
-                    (None, Some(b)) => stack.push((first + 1, b)),
-                    (None, None) => {}
-                }
-                continue;
-            }
-            for number in node.first..node.first + node.count {
+                Err(leaves) => leaves,
+            };
+            for number in leaves {
                 waiting[count] = number;
                 count += 1;
                 if count == TOGETHER {
@@ -262,10 +247,9 @@ impl Beam {
         let mut any = false;
         for (i, number) in numbers.iter().enumerate() {
             if several.is_met[i] {
-                let edges = several.edges(i);
                 // SAFETY: as this function.
-                let (nearer, doubtful) = unsafe { self.meet::<L>(&edges, *number) };
-                any |= nearer | (doubtful && self.settle(tree, origin, unit, &edges, *number));
+                let (nearer, doubtful) = unsafe { self.meet::<L>(&several, i, *number) };
+                any |= nearer | (doubtful && self.settle(tree, origin, unit, (&several, i), *number));
             }
         }
         any
@@ -299,15 +283,16 @@ impl Beam {
 
     /// Tests all rays; whether any is hit nearer than before, and whether any cannot be told in f32.
     #[inline(always)]
-    unsafe fn meet<L: Lanes>(&mut self, triangle: &Edges, number: u32) -> (bool, bool) {
+    unsafe fn meet<L: Lanes>(&mut self, several: &Several, which: usize, number: u32) -> (bool, bool) {
         let Rays { from_middle: [du, dv], nearness, found } = &mut self.rays;
         // SAFETY: as this function; there are whole vectors of rays.
         unsafe {
-            let splat = |f: &[f32; 3]| [L::splat(f[0]), L::splat(f[1]), L::splat(f[2])];
-            let least = splat(&triangle.least);
-            let [e0, e1, e2] = &triangle.functions;
+            let splat =
+                |f: &[EachNarrow; 3]| [L::splat(f[0][which]), L::splat(f[1][which]), L::splat(f[2][which])];
+            let least = splat(&several.least);
+            let [e0, e1, e2] = &several.functions;
             let [e0, e1, e2] = [splat(e0), splat(e1), splat(e2)];
-            let near = splat(&triangle.nearness);
+            let near = splat(&several.nearness);
             let (above, below) = (L::splat(1.0 + CLOSE), L::splat(1.0 - CLOSE));
             let number = L::splat(f32::from_bits(number));
             let (mut any, mut doubtful) = (0, 0);
@@ -336,14 +321,24 @@ impl Beam {
     /// For rays that two triangles are as near to as f32 can tell: compares them in f64.
     #[cold]
     #[inline(never)]
-    fn settle(&mut self, tree: &Tree, origin: &Origin<'_>, unit: f64, triangle: &Edges, number: u32) -> bool {
+    fn settle(
+        &mut self,
+        tree: &Tree,
+        origin: &Origin<'_>,
+        unit: f64,
+        (several, which): (&Several, usize),
+        number: u32,
+    ) -> bool {
         let mut any = false;
         for i in 0..self.count {
             let [du, dv] = self.rays.from_middle.map(|d| f64::from(d[i]));
-            let at = |[c, u, v]: [f32; 3]| f64::from(u) * du + (f64::from(v) * dv + f64::from(c));
-            let inside = (0..3).all(|k| at(triangle.functions[k]) >= f64::from(triangle.least[k]));
+            let at = |of: &[EachNarrow; 3]| {
+                let [c, u, v] = of.map(|of| f64::from(of[which]));
+                u * du + (v * dv + c)
+            };
+            let inside = (0..3).all(|k| at(&several.functions[k]) >= f64::from(several.least[k][which]));
             let known = f64::from(self.rays.nearness[i]);
-            if !inside || (at(triangle.nearness) - known).abs() > 2.0 * f64::from(CLOSE) * known {
+            if !inside || (at(&several.nearness) - known).abs() > 2.0 * f64::from(CLOSE) * known {
                 continue;
             }
             let exact = |number: u32| self.nearness(&tree.leaf(number), origin, unit, i);
@@ -428,25 +423,27 @@ impl Boxes {
         }
     }
 
-    /// How near along the longest component a box begins; none if no ray can meet it.
+    /// How near along the longest component each box begins, and which a ray may meet. In loops of plain arithmetic, which
+    /// compilers make vectors of.
     #[inline(always)]
-    fn enters(&self, node: &Node) -> Option<f64> {
-        let low = |i: usize| f64::from(node.min[self.order[i]]) - self.low[i];
-        let high = |i: usize| f64::from(node.max[self.order[i]]) - self.high[i];
-        let (near, far) = if self.backward { (-high(0), -low(0)) } else { (low(0), high(0)) };
-        if far < 0.0 {
-            return None;
-        }
-        let near = near.max(0.0);
+    fn enter(&self, branch: &Branch) -> (EachBox, [bool; WIDE]) {
+        let from = |of: &[[f32; WIDE]; 3], place: &[f64; 3], k: usize| {
+            of[self.order[k]].map(|c| f64::from(c) - place[k])
+        };
+        let (low, high) = (from(&branch.min, &self.low, 0), from(&branch.max, &self.high, 0));
+        let (begin, far) = if self.backward { (high.map(|v| -v), low.map(|v| -v)) } else { (low, high) };
+        let near = begin.map(|v| if v > 0.0 { v } else { 0.0 });
+        let mut met = far.map(|v| v >= 0.0);
         for k in 0..2 {
+            let (low, high) = (from(&branch.min, &self.low, k + 1), from(&branch.max, &self.high, k + 1));
             let [least, greatest] = self.range[k];
-            let least = least * if least >= 0.0 { near } else { far };
-            let greatest = greatest * if greatest >= 0.0 { far } else { near };
-            if high(k + 1) < least || low(k + 1) > greatest {
-                return None;
+            let (at_least, at_greatest) =
+                (if least >= 0.0 { &near } else { &far }, if greatest >= 0.0 { &far } else { &near });
+            for i in 0..WIDE {
+                met[i] &= (high[i] >= least * at_least[i]) & (low[i] <= greatest * at_greatest[i]);
             }
         }
-        Some(near)
+        (near, met)
     }
 }
 

@@ -5,7 +5,7 @@ use super::lanes::Lanes;
 use super::lanes::x86;
 use super::ray::Ray;
 use super::stage::{Stage, Target, Way};
-use super::tree::{Leaf, Node, Tree};
+use super::tree::{Branch, Inside, Leaf, Tree, WIDE};
 use crate::light::{POINTS, Points, Ways, component, vector};
 use glam::DVec3;
 
@@ -21,8 +21,8 @@ const GROUPS: usize = POINTS / GROUP;
 /// may enter; triangles by groups, in f32, by bounds of its rounding. What that leaves is tested in f64.
 #[derive(Default)]
 pub(super) struct Bundle {
-    /// Boxes still to be looked at, and the first group that may enter them.
-    stack: Vec<(u32, usize)>,
+    /// What is in boxes that are still to be looked at, and the first group that may enter them.
+    stack: Vec<(Inside, usize)>,
     lanes: InLanes,
 }
 
@@ -152,47 +152,46 @@ impl Bundle {
         let mut open = all;
         let mut stack = std::mem::take(&mut self.stack);
         stack.clear();
-        if !tree.nodes.is_empty() {
-            stack.push((0, 0));
-        }
-        while let Some((index, first)) = stack.pop() {
-            let node = &tree.nodes[index as usize];
-            if !self.lanes.may_enter(node) {
-                continue;
-            }
-            let mut groups = first..GROUPS;
-            // SAFETY: as this function.
-            let entering =
-                |group: usize| of_group(open, group) & unsafe { self.lanes.enter::<L>(node, group) };
-            let Some((first, some)) =
-                groups.find_map(|g| Some((g, entering(g))).filter(|(_, some)| *some != 0))
-            else {
-                continue;
-            };
-            if node.count == 0 {
-                tree.fetch(node);
-                stack.extend([(node.first, first), (node.first + 1, first)]);
-                continue;
-            }
-            let mut masks = [0; GROUPS];
-            masks[first] = some;
-            for group in groups {
-                masks[group] = entering(group);
-            }
-            for leaf in (node.first..node.first + node.count).map(|number| tree.leaf(number)) {
-                let triangle = Triangle::new(&leaf, tree);
-                for (group, mask) in masks.iter().enumerate().skip(first) {
-                    let mask = mask & of_group(open, group);
-                    if mask == 0 {
+        stack.extend(tree.root().map(|inside| (inside, 0)));
+        while let Some((inside, first)) = stack.pop() {
+            let Ok(branch) = tree.look(inside) else { continue };
+            let may_enter = self.lanes.may_enter(branch);
+            for i in (0..WIDE).filter(|i| may_enter[*i]) {
+                let mut groups = first..GROUPS;
+                // SAFETY: as this function.
+                let entering = |group: usize| unsafe { self.lanes.enter::<L>(branch, i, group) };
+                let entering = |group: usize| of_group(open, group) & entering(group);
+                let first = groups.find_map(|g| Some((g, entering(g))).filter(|(_, some)| *some != 0));
+                let Some((first, some)) = first else { continue };
+                let inside = branch.inside(i);
+                let leaves = match tree.look(inside) {
+                    Ok(_) => {
+                        tree.fetch(inside);
+                        stack.push((inside, first));
                         continue;
                     }
-                    // SAFETY: as this function.
-                    let mut possible = mask & unsafe { self.lanes.may_hit::<L>(&triangle, group) };
-                    while possible != 0 {
-                        let i = GROUP * group + possible.trailing_zeros() as usize;
-                        possible &= possible - 1;
-                        if rays.points.faces[i] != leaf.face || rays.from != rays.to {
-                            open &= !(u64::from(rays.ray(i).hits(&leaf)) << i);
+                    Err(leaves) => leaves,
+                };
+                let mut masks = [0; GROUPS];
+                masks[first] = some;
+                for group in groups {
+                    masks[group] = entering(group);
+                }
+                for leaf in leaves.map(|number| tree.leaf(number)) {
+                    let triangle = Triangle::new(&leaf, tree);
+                    for (group, mask) in masks.iter().enumerate().skip(first) {
+                        let mask = mask & of_group(open, group);
+                        if mask == 0 {
+                            continue;
+                        }
+                        // SAFETY: as this function.
+                        let mut possible = mask & unsafe { self.lanes.may_hit::<L>(&triangle, group) };
+                        while possible != 0 {
+                            let i = GROUP * group + possible.trailing_zeros() as usize;
+                            possible &= possible - 1;
+                            if rays.points.faces[i] != leaf.face || rays.from != rays.to {
+                                open &= !(u64::from(rays.ray(i).hits(&leaf)) << i);
+                            }
                         }
                     }
                 }
@@ -279,16 +278,14 @@ impl InLanes {
             return false;
         }
         // Those that are not open do what one does that is.
-        if open != u64::MAX {
-            let one = open.trailing_zeros() as usize % POINTS;
-            let mut of = [one; POINTS];
-            for (i, of) in of.iter_mut().enumerate().filter(|(i, _)| open >> i & 1 == 1) {
-                *of = i;
-            }
+        let (mut closed, one) = (!open, open.trailing_zeros() as usize % POINTS);
+        while closed != 0 {
+            let i = closed.trailing_zeros() as usize;
+            closed &= closed - 1;
             for values in self.origin.iter_mut().chain(&mut self.direction).chain(&mut self.inverse) {
-                *values = of.map(|i| values[i]);
+                values[i] = values[one];
             }
-            most = of.map(|i| most[i]);
+            most[i] = most[one];
         }
         self.far = ways.far as f32 * (1.0 + ROUNDING);
         self.slack = most.iter().fold(0.0, |a, b| if *b > a { *b } else { a }) as f32 * ROUNDING;
@@ -311,32 +308,34 @@ impl InLanes {
         true
     }
 
-    /// Whether any ray might enter a box, by their ranges.
+    /// Whether any ray might enter boxes, by their ranges.
     #[inline(always)]
-    fn may_enter(&self, node: &Node) -> bool {
-        let (mut near, mut far) = (0f32, self.far);
+    fn may_enter(&self, branch: &Branch) -> [bool; WIDE] {
+        let (mut near, mut far, mut within) = ([0f32; WIDE], [self.far; WIDE], [true; WIDE]);
         for (k, axis) in self.axes.iter().enumerate() {
-            let (low, high) = (node.min[k] - self.slack, node.max[k] + self.slack);
-            let (low, high) = if axis.backward { (-high, -low) } else { (low, high) };
+            let (low, high) = (branch.min[k].map(|c| c - self.slack), branch.max[k].map(|c| c + self.slack));
+            let (low, high) = if axis.backward { (high.map(|c| -c), low.map(|c| -c)) } else { (low, high) };
             match axis.inverse {
                 Some([least, greatest]) => {
-                    let (from, to) = (low - axis.origin[1], high - axis.origin[0]);
-                    near = near.max(from * if from >= 0.0 { least } else { greatest });
-                    far = far.min(to * if to >= 0.0 { greatest } else { least });
+                    for i in 0..WIDE {
+                        let (from, to) = (low[i] - axis.origin[1], high[i] - axis.origin[0]);
+                        near[i] = near[i].max(from * if from >= 0.0 { least } else { greatest });
+                        far[i] = far[i].min(to * if to >= 0.0 { greatest } else { least });
+                    }
                 }
                 None => {
-                    if low > axis.swept[1] || high < axis.swept[0] {
-                        return false;
+                    for i in 0..WIDE {
+                        within[i] &= (low[i] <= axis.swept[1]) & (high[i] >= axis.swept[0]);
                     }
                 }
             }
         }
-        near <= far * (1.0 + 4.0 * ROUNDING)
+        std::array::from_fn(|i| within[i] & (near[i] <= far[i] * (1.0 + 4.0 * ROUNDING)))
     }
 
-    /// Which rays of a group may enter a box.
+    /// Which rays of a group may enter one of the boxes.
     #[inline(always)]
-    unsafe fn enter<L: Lanes>(&self, node: &Node, group: usize) -> u32 {
+    unsafe fn enter<L: Lanes>(&self, branch: &Branch, of: usize, group: usize) -> u32 {
         let mut bits = 0;
         for i in (0..GROUP).step_by(L::COUNT) {
             let lane = GROUP * group + i;
@@ -346,8 +345,8 @@ impl InLanes {
                 for k in 0..3 {
                     let (origin, inverse) =
                         (L::load(&self.origin[k][lane..]), L::load(&self.inverse[k][lane..]));
-                    let low = L::splat(node.min[k] - self.slack).sub(origin).mul(inverse);
-                    let high = L::splat(node.max[k] + self.slack).sub(origin).mul(inverse);
+                    let low = L::splat(branch.min[k][of] - self.slack).sub(origin).mul(inverse);
+                    let high = L::splat(branch.max[k][of] + self.slack).sub(origin).mul(inverse);
                     // Where one is not a number, a ray runs in a side of the box: it has no say then.
                     near = low.min(high).max(near);
                     far = low.max(high).min(far);

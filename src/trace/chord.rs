@@ -1,9 +1,11 @@
 //! Where bent rays meet bodies.
 
-use super::tree::{Leaf, Node, Tree};
+use super::ray::Slabs;
+use super::tree::{Leaf, Part, Tree};
 use crate::relativity::Motion;
 use crate::scene::Mesh;
 use glam::DVec3;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use terrell_geodesic::{Event, FourVector, Lorentz, Ray, Rest, Segment, World};
 
@@ -82,18 +84,25 @@ impl Goal {
         piece: &Segment,
         ray: &impl Ray,
         nearest: f64,
-        stack: &mut Vec<u32>,
+        stack: &mut Vec<Part>,
     ) -> Option<Meeting> {
         let chord = self.chord(piece)?;
         let mut found: Option<Meeting> = None;
+        // Triangles whose boxes, inflated by the margin, the chord meets.
+        let tree = &*self.tree;
+        let place = (chord.start - tree.centre) * tree.scale;
+        let slack = chord.margin * tree.scale + 4.0 * f64::EPSILON * place.abs().max_element();
+        let slabs = Slabs::new(place, slack, chord.direction * tree.scale);
         let mut most = nearest - piece.from;
-        self.visit(&chord, stack, &mut most, |leaf, most| {
-            let at = self.strike(&chord, piece, ray, &self.tree.leaf(leaf as u32))?;
-            if at >= most || piece.from + at <= 0.0 {
-                return None;
-            }
-            found = Some(Meeting { s: piece.from + at, leaf });
-            Some(at)
+        let [from, to] = chord.range;
+        slabs.visit(tree, stack, [from, to.min(most)], |leaf| {
+            let at = self.strike(&chord, piece, ray, &tree.leaf(leaf));
+            let Some(at) = at.filter(|at| *at < most && piece.from + at > 0.0) else {
+                return ControlFlow::Continue(None);
+            };
+            found = Some(Meeting { s: piece.from + at, leaf: leaf as usize });
+            most = at;
+            ControlFlow::Continue(Some(to.min(most)))
         });
         found
     }
@@ -115,58 +124,6 @@ impl Goal {
         let range = [(middle - half).max(0.0), (middle + half).min(piece.length)];
         let ends = if exact { range } else { [0.0, piece.length] };
         (range[0] <= range[1]).then_some(Chord { start, direction, range, ends, margin })
-    }
-
-    /// Shows the triangles whose boxes, inflated by the margin, a chord meets before `most`, which is what `seen` makes it.
-    fn visit(
-        &self,
-        chord: &Chord,
-        stack: &mut Vec<u32>,
-        most: &mut f64,
-        mut seen: impl FnMut(usize, f64) -> Option<f64>,
-    ) {
-        let tree = &*self.tree;
-        let place = (chord.start - tree.centre) * tree.scale;
-        let inverse = 1.0 / (chord.direction * tree.scale);
-        let slack = chord.margin * tree.scale + 4.0 * f64::EPSILON * place.abs().max_element();
-        let enters = |node: &Node, most: f64| {
-            let (mut near, mut far) = (chord.range[0], chord.range[1].min(most));
-            for k in 0..3 {
-                let low = f64::from(node.min[k]) - place[k] - slack;
-                let high = f64::from(node.max[k]) - place[k] + slack;
-                // Not a number where it runs in a side of the box; min and max then take the other.
-                let (a, b) = (low * inverse[k], high * inverse[k]);
-                near = near.max(a.min(b));
-                far = far.min(a.max(b));
-            }
-            (near <= far * (1.0 + 1e-14) || near <= far).then_some(near)
-        };
-        stack.clear();
-        if !tree.nodes.is_empty() {
-            stack.push(0);
-        }
-        while let Some(index) = stack.pop() {
-            let node = &tree.nodes[index as usize];
-            if enters(node, *most).is_none() {
-                continue;
-            }
-            if node.count > 0 {
-                for leaf in node.first as usize..(node.first + node.count) as usize {
-                    if let Some(at) = seen(leaf, *most) {
-                        *most = at;
-                    }
-                }
-                continue;
-            }
-            let near = [0, 1].map(|k| enters(&tree.nodes[(node.first + k) as usize], *most));
-            match near {
-                [Some(a), Some(b)] if a <= b => stack.extend([node.first + 1, node.first]),
-                [Some(_), Some(_)] => stack.extend([node.first, node.first + 1]),
-                [Some(_), None] => stack.push(node.first),
-                [None, Some(_)] => stack.push(node.first + 1),
-                [None, None] => {}
-            }
-        }
     }
 
     /// Where the ray itself first goes through a triangle, on the piece that has this chord, from its start on.

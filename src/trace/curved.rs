@@ -2,6 +2,7 @@
 
 use super::chord::Goal;
 use super::tile::Count;
+use super::tree::Part;
 use crate::film::{FAILED, FLAGGED, HOLE, IMPOSSIBLE, Rows};
 use crate::light::{Facet, Point, SeenShading};
 use crate::scene::{EmissionLaw, Eye, Lens, Sky};
@@ -51,7 +52,7 @@ struct Hit {
 #[derive(Default)]
 pub(super) struct Band {
     outcomes: Vec<Outcome>,
-    stack: Vec<u32>,
+    stack: Vec<Part>,
 }
 
 impl Band {

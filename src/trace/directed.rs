@@ -9,11 +9,13 @@ pub(super) struct Directed {
     pub directions: [[f64; RAYS]; 3],
     /// 1/s of what they are known to hit already, s in units of the direction; 0 for nothing.
     pub nearness: [f64; RAYS],
+    /// Doppler factors of what they would hit.
+    pub dopplers: [f64; RAYS],
 }
 
 impl Default for Directed {
     fn default() -> Self {
-        Self { count: 0, directions: [[0.0; RAYS]; 3], nearness: [0.0; RAYS] }
+        Self { count: 0, directions: [[0.0; RAYS]; 3], nearness: [0.0; RAYS], dopplers: [1.0; RAYS] }
     }
 }
 
@@ -23,6 +25,13 @@ impl Directed {
         DVec3::from_array(self.directions.each_ref().map(|c| c[i]))
     }
 
+    /// One more, that of another beam.
+    pub fn push_of(&mut self, other: &Self, i: usize) {
+        self.dopplers[self.count] = other.dopplers[i];
+        self.push(other.direction(i), other.nearness[i]);
+    }
+
+    /// One more.
     pub fn push(&mut self, direction: DVec3, nearness: f64) {
         let i = self.count;
         self.count += 1;

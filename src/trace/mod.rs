@@ -19,12 +19,14 @@ mod curved;
 mod directed;
 mod edges;
 mod emitters;
+mod faces;
 mod lanes;
 mod lists;
 mod origin;
 mod path;
 mod random;
 mod ray;
+mod sights;
 mod stage;
 mod tile;
 mod tree;
@@ -189,7 +191,7 @@ impl Tracer {
         mut step: impl FnMut(usize, usize),
     ) -> Traced {
         let Look { samples, shading, paths } = *look;
-        film.clear(camera.lens.width(), camera.lens.height());
+        film.resize(camera.lens.width(), camera.lens.height());
         let follows = paths.bounces > 0;
         let stage = self.stage(scene, camera, shading.lights() > 0 || follows);
         let emitters = follows.then(|| Emitters::new(&stage.targets, shading));
@@ -279,7 +281,7 @@ impl Tracer {
         done: impl Fn(u32) + Sync,
     ) -> Traced {
         let Look { samples, shading, .. } = *look;
-        film.clear(lens.width(), lens.height());
+        film.resize(lens.width(), lens.height());
         let goals = scene.bodies.iter().enumerate().zip(&self.trees).map(|((index, body), tree)| {
             let tree = tree.clone().unwrap_or_else(|| Arc::new(Tree::new(&body.mesh)));
             Goal::new(index, &body.motion, body.mesh.clone(), tree, space.sagitta(), space.lag())
@@ -291,6 +293,7 @@ impl Tracer {
             .bands(SIDE)
             .enumerate()
             .map_init(curved::Band::default, |band, (index, mut rows)| {
+                rows.clear();
                 let count = band.draw(&job, index as u32 * SIDE, &mut rows);
                 let rows = (rows.body.len() / lens.width() as usize) as u32;
                 done(finished.fetch_add(rows, Ordering::Relaxed) + rows);

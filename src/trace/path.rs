@@ -3,6 +3,7 @@
 use super::emitters::{Emitters, Shares};
 use super::random::Random;
 use super::stage::{Stage, Way};
+use super::tree::Part;
 use crate::light::gloss::{self, Chosen};
 use crate::light::{Point, SeenShading, SurfaceLight, Trail};
 use crate::scene::{Colors, Gloss, Sky};
@@ -58,7 +59,7 @@ const BLUR: f64 = 0.1;
 /// Used again from path to path.
 #[derive(Default)]
 pub(super) struct Scratch {
-    pub stack: Vec<u32>,
+    pub stack: Vec<Part>,
     pub rays: u64,
     shares: Shares,
 }

@@ -2,9 +2,10 @@
 
 use super::beam::inverse_unit;
 use super::origin::Origin;
-use super::tree::{Leaf, Node, Tree};
+use super::tree::{Branch, EachBox, Leaf, Part, Tree, WIDE};
 use crate::light::owns_boundary;
 use glam::DVec3;
+use std::ops::ControlFlow;
 
 /// A ray in the rest frame of a body: origin + s·direction.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +29,7 @@ pub(super) struct Hit {
 
 impl Ray<'_> {
     /// The nearest triangle.
-    pub fn nearest(&self, tree: &Tree, stack: &mut Vec<u32>) -> Option<Hit> {
+    pub fn nearest(&self, tree: &Tree, stack: &mut Vec<Part>) -> Option<Hit> {
         let mut nearest = None;
         self.visit(tree, stack, |hit| {
             nearest = Some(hit);
@@ -38,7 +39,7 @@ impl Ray<'_> {
     }
 
     /// Whether there is any triangle.
-    pub fn is_blocked(&self, tree: &Tree, stack: &mut Vec<u32>) -> bool {
+    pub fn is_blocked(&self, tree: &Tree, stack: &mut Vec<Part>) -> bool {
         let mut blocked = false;
         self.visit(tree, stack, |_| {
             blocked = true;
@@ -60,45 +61,25 @@ impl Ray<'_> {
 
     /// Shows all triangles hit within the range, roughly the nearest first, until there is none in a range that `seen`
     /// has shortened, or it wants no more.
-    fn visit(&self, tree: &Tree, stack: &mut Vec<u32>, mut seen: impl FnMut(Hit) -> Option<f64>) {
+    fn visit(&self, tree: &Tree, stack: &mut Vec<Part>, mut seen: impl FnMut(Hit) -> Option<f64>) {
         let (place, slack) = self.origin.place(tree);
-        let slabs = Slabs { place, slack, inverse: 1.0 / (self.direction * tree.scale) };
+        let slabs = Slabs::new(place, slack, self.direction * tree.scale);
         let unit = tree.scale * inverse_unit(place);
-        let mut far = self.range[1];
-        stack.clear();
-        if tree.nodes.first().is_some_and(|root| slabs.enters(root, self.range[0], far).is_some()) {
-            stack.push(0);
-        }
-        while let Some(index) = stack.pop() {
-            let node = &tree.nodes[index as usize];
-            if node.count == 0 {
-                let first = node.first;
-                let [a, b] =
-                    [0, 1].map(|k| slabs.enters(&tree.nodes[(first + k) as usize], self.range[0], far));
-                match (a, b) {
-                    (Some(a), Some(b)) if a <= b => stack.extend([first + 1, first]),
-                    (Some(_), Some(_)) => stack.extend([first, first + 1]),
-                    (Some(_), None) => stack.push(first),
-                    (None, Some(_)) => stack.push(first + 1),
-                    (None, None) => {}
-                }
-                continue;
+        let [from, mut far] = self.range;
+        slabs.visit(tree, stack, self.range, |number| {
+            let leaf = &tree.leaf(number);
+            if self.but == Some(leaf.face) {
+                return ControlFlow::Continue(None);
             }
-            for number in node.first..node.first + node.count {
-                let leaf = &tree.leaf(number);
-                if self.but == Some(leaf.face) {
-                    continue;
-                }
-                let corners = leaf.corners.map(|c| self.origin.to(c) * unit);
-                let Some(at) = meet(corners, self.direction * unit) else { continue };
-                if at > self.range[0] && at < far {
-                    match seen(Hit { at, leaf: number }) {
-                        Some(shorter) => far = shorter,
-                        None => return,
-                    }
-                }
+            let corners = leaf.corners.map(|c| self.origin.to(c) * unit);
+            let at = meet(corners, self.direction * unit).filter(|at| *at > from && *at < far);
+            let Some(at) = at else { return ControlFlow::Continue(None) };
+            match seen(Hit { at, leaf: number }) {
+                Some(shorter) => far = shorter,
+                None => return ControlFlow::Break(()),
             }
-        }
+            ControlFlow::Continue(Some(far))
+        });
     }
 }
 
@@ -122,27 +103,75 @@ pub(super) fn meet([a, b, c]: [DVec3; 3], direction: DVec3) -> Option<f64> {
 }
 
 /// How a ray meets boxes.
-struct Slabs {
-    place: DVec3,
-    slack: f64,
-    /// 1 over the direction, in the tree's units.
-    inverse: DVec3,
+pub(super) struct Slabs {
+    /// Where it begins, in the tree's units; a little outward of boxes that lie above.
+    low: [f64; 3],
+    /// As `low`, of those that lie below.
+    high: [f64; 3],
+    /// 1 over the direction.
+    inverse: [f64; 3],
 }
 
 impl Slabs {
-    /// s where a ray enters a box; none where it misses it.
-    #[inline(always)]
-    fn enters(&self, node: &Node, from: f64, to: f64) -> Option<f64> {
-        let (mut near, mut far) = (from, to);
-        for k in 0..3 {
-            let low = f64::from(node.min[k]) - self.place[k] - self.slack;
-            let high = f64::from(node.max[k]) - self.place[k] + self.slack;
-            // Not a number where it runs in a side of the box; min and max then take the other.
-            let (a, b) = (low * self.inverse[k], high * self.inverse[k]);
-            near = near.max(a.min(b));
-            far = far.min(a.max(b));
-        }
-        // Rounding, by more than there can be.
-        (near <= far * (1.0 + 1e-14) || near <= far).then_some(near)
+    /// Of a ray from `place`, which may be off by `slack`, both and the direction in the tree's units.
+    pub fn new(place: DVec3, slack: f64, direction: DVec3) -> Self {
+        let [low, high] = [place + slack, place - slack].map(|v| v.to_array());
+        Self { low, high, inverse: (1.0 / direction).to_array() }
     }
+
+    /// Shows all triangles in boxes that the ray meets between two s, roughly the nearest first; `seen` says whether the second
+    /// is nearer now, and whether it wants more.
+    pub fn visit(
+        &self,
+        tree: &Tree,
+        stack: &mut Vec<Part>,
+        [from, mut far]: [f64; 2],
+        mut seen: impl FnMut(u32) -> ControlFlow<(), Option<f64>>,
+    ) {
+        stack.clear();
+        stack.extend(tree.root().map(|inside| Part { near: from, inside }));
+        while let Some(part) = stack.pop() {
+            if !is_within(part.near, far) {
+                continue;
+            }
+            match tree.look(part.inside) {
+                Ok(branch) => {
+                    let (near, met) = self.enter(branch, from, far);
+                    tree.push(branch, &near, met, stack);
+                }
+                Err(leaves) => {
+                    for leaf in leaves {
+                        match seen(leaf) {
+                            ControlFlow::Continue(nearer) => far = nearer.unwrap_or(far),
+                            ControlFlow::Break(()) => return,
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// s where a ray enters each box, and which it does enter between two s. In loops of plain arithmetic, which compilers make
+    /// vectors of.
+    #[inline(always)]
+    fn enter(&self, branch: &Branch, from: f64, to: f64) -> (EachBox, [bool; WIDE]) {
+        let (mut near, mut far) = ([from; WIDE], [to; WIDE]);
+        for k in 0..3 {
+            for i in 0..WIDE {
+                let a = (f64::from(branch.min[k][i]) - self.low[k]) * self.inverse[k];
+                let b = (f64::from(branch.max[k][i]) - self.high[k]) * self.inverse[k];
+                // Where one is not a number, the ray runs in a side of the box made larger, which is beside it.
+                let (first, last) = (if a < b { a } else { b }, if a > b { a } else { b });
+                near[i] = if first > near[i] { first } else { near[i] };
+                far[i] = if last < far[i] { last } else { far[i] };
+            }
+        }
+        (near, std::array::from_fn(|i| is_within(near[i], far[i])))
+    }
+}
+
+/// Whether something begins before something ends; by more than rounding can be.
+#[inline(always)]
+fn is_within(near: f64, far: f64) -> bool {
+    (near <= far * (1.0 + 1e-14)) | (near <= far)
 }

@@ -1,4 +1,5 @@
 use super::beam::RAYS;
+use super::directed::Directed;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::x86;
 use super::origin::Origin;
@@ -97,39 +98,42 @@ impl Target {
         self.map.rotate_back(self.sky.boosted_direction(v, length))
     }
 
-    /// All together; with AVX2 if `vectors` and there is such.
-    pub fn rest_directions(&self, sights: &Sights, rest: &mut [[f64; RAYS]; 3], vectors: bool) {
+    /// Of all lines of sight together: their directions in the rest frame, and the Doppler factors of what they meet there. With
+    /// AVX2 if `vectors` and there is such.
+    pub fn boost(&self, lines: &[[f64; RAYS]; 4], rest: &mut Directed, vectors: bool) {
         #[cfg(target_arch = "x86_64")]
         if vectors && x86::has_avx2() {
             // SAFETY: the processor has both.
-            unsafe { self.rest_directions_avx2(sights, rest) };
+            unsafe { self.boost_avx2(lines, rest) };
             return;
         }
         let _ = vectors;
-        self.rest_directions_with(sights, rest);
+        self.boost_with(lines, rest);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn rest_directions_avx2(&self, sights: &Sights, rest: &mut [[f64; RAYS]; 3]) {
-        self.rest_directions_with(sights, rest);
+    fn boost_avx2(&self, lines: &[[f64; RAYS]; 4], rest: &mut Directed) {
+        self.boost_with(lines, rest);
     }
 
     /// In loops of plain arithmetic, which compilers make vectors of.
     #[inline(always)]
-    fn rest_directions_with(&self, Sights([length, x, y, z]): &Sights, rest: &mut [[f64; RAYS]; 3]) {
+    fn boost_with(&self, [length, x, y, z]: &[[f64; RAYS]; 4], rest: &mut Directed) {
         let axis = self.sky.axis();
         // What is added along the motion.
         let mut more = [0.0; RAYS];
-        for (i, more) in more.iter_mut().enumerate() {
+        for (i, (more, doppler)) in more.iter_mut().zip(&mut rest.dopplers).enumerate() {
             let along = x[i] * axis.x + y[i] * axis.y + z[i] * axis.z;
             let across =
                 [y[i] * axis.z - z[i] * axis.y, z[i] * axis.x - x[i] * axis.z, x[i] * axis.y - y[i] * axis.x];
             let across = across[0] * across[0] + across[1] * across[1] + across[2] * across[2];
-            *more = self.sky.boosted_parts(along, across, length[i]).along - along;
+            let boosted = self.sky.boosted_parts(along, across, length[i]);
+            *more = boosted.along - along;
+            *doppler = length[i] / boosted.length;
         }
         let axes = self.map.axes();
-        for (k, rest) in rest.iter_mut().enumerate() {
+        for (k, rest) in rest.directions.iter_mut().enumerate() {
             let row = axes.row(k);
             for i in 0..RAYS {
                 rest[i] = row.x * (x[i] + more[i] * axis.x)
@@ -137,17 +141,6 @@ impl Target {
                     + row.z * (z[i] + more[i] * axis.z);
             }
         }
-    }
-}
-
-/// Lines of sight side by side: lengths and components, observer's axes.
-#[repr(align(64))]
-pub(super) struct Sights(pub [[f64; RAYS]; 4]);
-
-impl Default for Sights {
-    fn default() -> Self {
-        // Any that can be boosted, where there are none.
-        Self([[1.0; RAYS], [0.0; RAYS], [0.0; RAYS], [1.0; RAYS]])
     }
 }
 

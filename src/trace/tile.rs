@@ -1,14 +1,17 @@
 use super::beam::{Beam, NONE, RAYS, SAME};
 use super::bundle::Bundle;
 use super::directed::{Directed, facing};
+use super::faces::{Appearance, Faces};
 use super::lists::Lists;
 use super::origin::Origin;
 use super::path::{self, Vertex, World};
 use super::random::Random;
-use super::stage::{Sights, Stage, Target};
+use super::sights::Sights;
+use super::stage::Stage;
+use crate::color::Coloring;
 use crate::film::Rows;
-use crate::light::{Facet, Glow, Points, SeenShading, Ways};
-use crate::scene::{Colors, Lens, Sky};
+use crate::light::{Points, SeenShading, Ways, logarithms};
+use crate::scene::{Lens, Projection, Sky};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -30,13 +33,12 @@ pub(super) struct Tile {
     large: Vec<Vec<u32>>,
     /// Triangles of one body that may be seen in the tile.
     candidates: Vec<u32>,
-    sights: Vec<Sight>,
+    sights: Sights,
     /// Bodies that may be seen in the tile.
     met: Vec<usize>,
-    /// Their lengths and components, those of `sights`.
-    seen: Sights,
+    /// Lines of sight in the rest frame of one of them.
     rays: Directed,
-    /// Of which lines of sight they are.
+    /// Of which lines of sight the rays are.
     numbers: Vec<usize>,
     /// What of one body may be lit, and how it is lit.
     points: Points,
@@ -96,41 +98,6 @@ impl Count {
     }
 }
 
-/// A line of sight and what it meets.
-#[derive(Clone, Copy)]
-struct Sight {
-    /// Of the pixel in the band.
-    pixel: usize,
-    at: DVec2,
-    direction: DVec3,
-    length: f64,
-    /// 1/s of the nearest hit, in units of the direction; 0 for none.
-    nearness: f64,
-    target: usize,
-    /// Number of the triangle in the target's tree; [`NONE`] for no hit.
-    leaf: u32,
-    /// The direction in the target's rest frame.
-    rest: DVec3,
-}
-
-/// A triangle that is met, with what is the same all over it.
-struct Met<'a> {
-    facet: Facet<'a>,
-    material: usize,
-    plain: Option<Colors>,
-    glow: Option<Glow<'a>>,
-}
-
-impl<'a> Met<'a> {
-    fn new(shading: &SeenShading<'a>, target: &'a Target, leaf: u32) -> Self {
-        let facet = target.facet(leaf);
-        let material = target.mesh.material_index(facet.face());
-        let plain = facet.plain_colors();
-        let glow = plain.as_ref().and_then(|colors| shading.glow(target.body, material, colors));
-        Self { facet, material, plain, glow }
-    }
-}
-
 /// What is to be drawn.
 #[derive(Clone, Copy)]
 pub(super) struct Job<'a> {
@@ -154,23 +121,27 @@ pub(super) struct Job<'a> {
 impl Tile {
     /// Draws some of the samples of a band of the film, [`SIDE`] rows from `top` on.
     pub fn draw_band(&mut self, job: &Job<'_>, top: u32, pass: Range<usize>, mut rows: Rows<'_>) -> Count {
-        self.follow_band(job, top, pass, |tile, sample| tile.develop(job, sample, &mut rows))
+        if pass.start == 0 {
+            rows.clear();
+        }
+        self.follow_band(job, top, pass, |tile, faces, sample| tile.develop(job, faces, sample, &mut rows))
     }
 
     /// Only follows the band's rays.
     pub fn cast_band(&mut self, job: &Job<'_>, top: u32) -> Count {
-        self.follow_band(job, top, 0..job.samples.len(), |_, _| ())
+        self.follow_band(job, top, 0..job.samples.len(), |_, _, _| ())
     }
 
     /// Follows the rays of a band, tile by tile and sample by sample.
-    fn follow_band(
+    fn follow_band<'a>(
         &mut self,
-        job: &Job<'_>,
+        job: &Job<'a>,
         top: u32,
         pass: Range<usize>,
-        mut done: impl FnMut(&mut Self, usize),
+        mut done: impl FnMut(&mut Self, &mut Faces<'a>, usize),
     ) -> Count {
         self.count = Count::default();
+        let mut faces = Faces::default();
         self.top = top;
         let width = job.lens.width();
         let height = SIDE.min(job.lens.height() - top);
@@ -196,11 +167,13 @@ impl Tile {
                 self.count.primary += pass.len() as u64 * u64::from(size[0] * size[1]);
                 continue;
             }
+            faces.all.clear();
             for number in pass.clone() {
-                self.look(job, [left, top], size, job.samples[number]);
-                self.find(job);
-                self.light(job);
-                done(self, number);
+                self.sights.aim(job.lens, [left, top], size, job.samples[number]);
+                self.count.primary += self.sights.count as u64;
+                self.find(job, &mut faces);
+                self.light(job, &faces);
+                done(self, &mut faces, number);
             }
         }
         self.count.path += std::mem::take(&mut self.paths.rays);
@@ -219,40 +192,12 @@ impl Tile {
         }
     }
 
-    /// Lines of sight of a sample of all pixels.
-    fn look(&mut self, job: &Job<'_>, [left, top]: [u32; 2], [width, height]: [u32; 2], sample: [f64; 2]) {
-        self.sights.clear();
-        for line in 0..height {
-            for column in 0..width {
-                let at =
-                    DVec2::new(f64::from(left + column), f64::from(top + line)) + DVec2::from_array(sample);
-                let Some(direction) = job.lens.direction(at) else { continue };
-                let i = self.sights.len();
-                self.seen.0[0][i] = direction.length();
-                for k in 0..3 {
-                    self.seen.0[k + 1][i] = direction[k];
-                }
-                self.sights.push(Sight {
-                    pixel: (line * job.lens.width() + left + column) as usize,
-                    at,
-                    direction,
-                    length: self.seen.0[0][i],
-                    nearness: 0.0,
-                    target: 0,
-                    leaf: NONE,
-                    rest: DVec3::ZERO,
-                });
-            }
-        }
-        self.count.primary += self.sights.len() as u64;
-    }
-
     /// The nearest triangle of any body for every line of sight.
-    fn find(&mut self, job: &Job<'_>) {
+    fn find<'a>(&mut self, job: &Job<'a>, faces: &mut Faces<'a>) {
         for met in 0..self.met.len() {
             let index = self.met[met];
             let target = &job.stage.targets[index];
-            if self.sights.is_empty() {
+            if self.sights.count == 0 {
                 return;
             }
             if let Some(lists) = job.lists {
@@ -261,15 +206,13 @@ impl Tile {
                 self.candidates.extend_from_slice(lists.of_tile(self.top / SIDE, self.column));
                 self.candidates.extend_from_slice(&self.large[index * lists.columns + column]);
             }
-            self.rays.count = self.sights.len();
-            target.rest_directions(&self.seen, &mut self.rays.directions, job.vectors);
-            for (nearness, sight) in self.rays.nearness.iter_mut().zip(&self.sights) {
-                *nearness = sight.nearness;
-            }
+            self.rays.count = self.sights.count;
+            self.rays.nearness = self.sights.nearness;
+            target.boost(&self.sights.lines, &mut self.rays, job.vectors);
             if let Some(way) = self.rays.facing() {
                 self.numbers.clear();
                 self.numbers.extend(0..self.rays.count);
-                self.follow(job, index, way);
+                self.follow(job, index, way, faces);
                 continue;
             }
             // Those that face the same way at a time.
@@ -279,56 +222,52 @@ impl Tile {
                 self.numbers.extend((0..all.count).filter(|i| facing(all.direction(*i)) == way));
                 self.rays.count = 0;
                 for i in &self.numbers {
-                    self.rays.push(all.direction(*i), all.nearness[*i]);
+                    self.rays.push_of(&all, *i);
                 }
                 if self.rays.count > 0 {
-                    self.follow(job, index, way);
+                    self.follow(job, index, way, faces);
                 }
             }
         }
     }
 
     /// What of one body the rays hit, which are those of the lines of sight in `numbers`.
-    fn follow(&mut self, job: &Job<'_>, index: usize, way: (usize, bool)) {
+    fn follow<'a>(&mut self, job: &Job<'a>, index: usize, way: (usize, bool), faces: &mut Faces<'a>) {
         let target = &job.stage.targets[index];
         let origin = Origin::of_observer(&target.map);
         let leaves = job.lists.map(|_| &self.candidates[..]);
         self.beam.trace(way, &self.rays, &target.tree, leaves, &origin, job.vectors);
-        // The plane of the triangle met last: N, and its distance times |N|.
-        let (mut last, mut normal, mut over) = (NONE, DVec3::ZERO, 0.0);
-        for (number, sight) in self.numbers.iter().enumerate() {
+        let sights = &mut self.sights;
+        for (number, &i) in self.numbers.iter().enumerate() {
             let found = self.beam.found(number);
             if found == NONE {
                 continue;
             }
-            let leaf = target.tree.leaf(found);
-            if found != last {
-                let [a, b, c] = leaf.corners.map(|c| origin.to(c));
-                normal = (b - a).cross(c - a);
-                (last, over) = (found, normal.dot(a));
-            }
+            let face = faces.number(index, target, found);
             let rest = self.rays.direction(number);
-            let nearness = normal.dot(rest) / over;
-            let sight = &mut self.sights[*sight];
-            if nearness > sight.nearness * (1.0 + SAME) {
-                *sight = Sight { nearness, target: index, leaf: found, rest, ..*sight };
+            let nearness = faces.all[face as usize].plane.dot(rest);
+            if nearness > sights.nearness[i] * (1.0 + SAME) {
+                (sights.nearness[i], sights.faces[i]) = (nearness, face);
+                sights.dopplers[i] = self.rays.dopplers[number];
+                for k in 0..3 {
+                    sights.rest[k][i] = rest[k];
+                }
             }
         }
     }
 
     /// Which lights reach what is seen: a bit a line of sight for each.
-    fn light(&mut self, job: &Job<'_>) {
+    fn light(&mut self, job: &Job<'_>, faces: &Faces<'_>) {
         let lights = job.shading.lights();
         self.lit.clear();
         self.lit.resize(lights, !0);
         if lights == 0 {
             return;
         }
-        debug_assert!(self.sights.len() <= RAYS);
         for met in 0..self.met.len() {
             let index = self.met[met];
             let target = &job.stage.targets[index];
-            self.gather(job, index);
+            self.gather(job, index, faces);
             if self.points.count == 0 {
                 continue;
             }
@@ -351,60 +290,61 @@ impl Tile {
     }
 
     /// Points of one body that may be lit.
-    fn gather(&mut self, job: &Job<'_>, index: usize) {
+    fn gather(&mut self, job: &Job<'_>, index: usize, faces: &Faces<'_>) {
         self.points.count = 0;
         self.numbers.clear();
         let target = &job.stage.targets[index];
-        // The triangle met last, if it may be lit.
-        let (mut last, mut facet) = (NONE, None);
-        for (number, sight) in self.sights.iter().enumerate() {
-            if sight.leaf == NONE || sight.target != index {
+        // The triangle met last, and whether it may be lit.
+        let (mut last, mut lit) = (NONE, false);
+        for i in 0..self.sights.count {
+            let number = self.sights.faces[i];
+            let Some(face) = faces.all.get(number as usize).filter(|face| face.target == index) else {
                 continue;
+            };
+            if number != last {
+                last = number;
+                lit = job.shading.is_lit(target.body, target.mesh.material_index(face.facet.face()));
             }
-            if sight.leaf != last {
-                last = sight.leaf;
-                let material = |f: &Facet<'_>| target.mesh.material_index(f.face());
-                let lit = |f: &Facet<'_>| job.shading.is_lit(target.body, material(f));
-                facet = Some(target.facet(last)).filter(lit);
-            }
-            if let Some(facet) = &facet {
-                self.points.push(facet, sight.rest / sight.nearness);
-                self.numbers.push(number);
+            if lit {
+                let at = self.sights.point(i);
+                self.points.push(face.facet.face(), at, face.normal_seen(at));
+                self.numbers.push(i);
             }
         }
     }
 
     /// Looks up what the triangles look like.
-    fn develop(&mut self, job: &Job<'_>, sample: usize, rows: &mut Rows<'_>) {
+    fn develop<'a>(&mut self, job: &Job<'a>, faces: &mut Faces<'a>, sample: usize, rows: &mut Rows<'_>) {
         let weight = 1.0 / job.samples.len() as f32;
         // Each of many samples stands for a part of the pixel.
         let spread = f64::from(weight.sqrt());
-        // The triangle met last.
-        let mut last = (0, NONE);
-        let mut met = None;
-        for (number, sight) in self.sights.iter().enumerate() {
-            if sight.leaf == NONE {
+        let sights = &self.sights;
+        let mut logs = [0.0; RAYS];
+        if job.shading.coloring() == Coloring::Spectral {
+            logarithms(&sights.dopplers, &mut logs, job.vectors);
+        }
+        for (number, &logarithm) in logs[..sights.count].iter().enumerate() {
+            let pixel = sights.pixels[number] as usize;
+            let Some(face) = faces.all.get_mut(sights.faces[number] as usize) else {
                 if let Some((sky, world_from_observer)) = &job.sky {
-                    sight.see_sky(job, sky, world_from_observer, weight, sample == 0, rows);
+                    self.see_sky(job, number, sky, world_from_observer, weight, sample == 0, rows);
                 }
                 continue;
-            }
-            let target = &job.stage.targets[sight.target];
-            if last != (sight.target, sight.leaf) {
-                last = (sight.target, sight.leaf);
-                met = Some(Met::new(job.shading, target, sight.leaf));
-            }
-            let Some(Met { facet, material, plain, glow }) = &mut met else { continue };
-            let material = *material;
-            let at = || sight.rest / sight.nearness;
-            let doppler = sight.length / target.sky.boosted(sight.direction, sight.length).length;
-            let sights = || {
-                // A look along the line of sight itself where there is no neighbour: as sharp as can be.
-                let to =
-                    |step: DVec2| job.lens.direction(sight.at + step * spread).unwrap_or(sight.direction);
-                [sight.direction, to(DVec2::X), to(DVec2::Y)].map(|v| target.rest_direction(v, v.length()))
             };
-            let colors = || plain.unwrap_or_else(|| facet.colors(at(), sights));
+            let target = &job.stage.targets[face.target];
+            let (index, leaf) = (face.target, face.leaf);
+            let doppler = sights.dopplers[number];
+            let (facet, Appearance { material, plain, glow }) = face.appearance(job.shading, target);
+            let material = *material;
+            let at = || sights.point(number);
+            let looks = || {
+                // A look along the line of sight itself where there is no neighbour: as sharp as can be.
+                let here = sights.direction(number);
+                let to =
+                    |step: DVec2| job.lens.direction(sights.place(number) + step * spread).unwrap_or(here);
+                [here, to(DVec2::X), to(DVec2::Y)].map(|v| target.rest_direction(v, v.length()))
+            };
+            let colors = || plain.unwrap_or_else(|| facet.colors(at(), looks));
             let shadowed = || {
                 job.shading.radiance_with_shadows(
                     target.body,
@@ -420,7 +360,7 @@ impl Tile {
                 )
             };
             let mut light = match glow {
-                Some(glow) => glow.radiance(doppler),
+                Some(glow) => glow.radiance(doppler, logarithm),
                 None => shadowed(),
             };
             if let Some(world) = job.world
@@ -428,8 +368,8 @@ impl Tile {
             {
                 let surface = job.shading.surface(target.body, material);
                 let vertex = Vertex {
-                    target: sight.target,
-                    leaf: sight.leaf,
+                    target: index,
+                    leaf,
                     face: facet.face() as u32,
                     point: facet.point(at()),
                     colors: colors(),
@@ -437,21 +377,50 @@ impl Tile {
                     gloss: *surface.gloss(),
                     doppler,
                 };
-                let pixel = u64::from(self.top) * u64::from(job.lens.width()) + sight.pixel as u64;
-                let mut random = Random::new(world.paths.seed, pixel, sample as u64);
+                let ordinal = u64::from(self.top) * u64::from(job.lens.width()) + pixel as u64;
+                let mut random = Random::new(world.paths.seed, ordinal, sample as u64);
                 let more = world.indirect(vertex, &mut random, &mut self.paths);
                 let more = more.map(|v| if v.is_finite() { v as f32 } else { 0.0 });
                 light = [0, 1, 2].map(|c| light[c] + more[c]);
             }
-            let i = sight.pixel;
-            let color = &mut rows.color[i];
+            let color = &mut rows.color[pixel];
             *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
             if sample == 0 {
-                rows.distance[i] = (sight.length / sight.nearness) as f32;
-                rows.doppler[i] = doppler as f32;
-                rows.body[i] = target.body as i32;
-                rows.face[i] = facet.face() as i32;
+                rows.distance[pixel] = (sights.lines[0][number] / sights.nearness[number]) as f32;
+                rows.doppler[pixel] = doppler as f32;
+                rows.body[pixel] = target.body as i32;
+                rows.face[pixel] = facet.face() as i32;
             }
+        }
+    }
+
+    /// What of the sky is seen where nothing is in the way.
+    #[expect(clippy::too_many_arguments, reason = "one call, from the one place that has all of it")]
+    fn see_sky(
+        &self,
+        job: &Job<'_>,
+        number: usize,
+        sky: &Sky,
+        world_from_observer: &Lorentz<terrell_geodesic::World, Observer>,
+        weight: f32,
+        centre: bool,
+        rows: &mut Rows<'_>,
+    ) {
+        let (pixel, direction) = (self.sights.pixels[number] as usize, self.sights.direction(number));
+        let spread = f64::from(weight.sqrt());
+        let sight = |v: DVec3| *world_from_observer * FourVector::seen_from(v.normalize());
+        let to = |step: DVec2| {
+            let there = job.lens.direction(self.sights.place(number) + step * spread).unwrap_or(direction);
+            sight(there).xyz().normalize_or(DVec3::Z)
+        };
+        let here = sight(direction);
+        let (direction, doppler) = (here.xyz().normalize_or(DVec3::Z), 1.0 / here.t.abs());
+        let steps = [DVec2::X, DVec2::Y].map(|step| to(step) - direction);
+        let light = job.shading.sky(doppler, sky.color(direction, steps));
+        let color = &mut rows.color[pixel];
+        *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
+        if centre {
+            rows.doppler[pixel] = doppler as f32;
         }
     }
 }
@@ -465,42 +434,15 @@ fn cone(lens: &Lens, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> (DVec3
     let (width, height) = (f64::from(width), f64::from(height));
     let Some(axis) = direction(0.5 * width, 0.5 * height) else { return (DVec3::Z, std::f64::consts::PI) };
     let mut chord = 0f64;
-    // Corners and the middles of sides: what bulges between them is little, in pixels.
-    for x in [0.0, 0.5, 1.0] {
-        for y in [0.0, 0.5, 1.0] {
+    // Corners, and the middles of sides that are not straight: what bulges between them is little, in pixels.
+    let places: &[f64] =
+        if lens.projection() == Projection::Pinhole { &[0.0, 1.0] } else { &[0.0, 0.5, 1.0] };
+    for x in places {
+        for y in places {
             let Some(d) = direction(x * width, y * height) else { return (DVec3::Z, std::f64::consts::PI) };
             chord = chord.max((d - axis).length());
         }
     }
     // A tile of a picture of few pixels is a large part of the sky; else angle and chord are nearly the same.
     if chord > 0.2 { (DVec3::Z, std::f64::consts::PI) } else { (axis, 1.21 * chord) }
-}
-
-impl Sight {
-    /// What of the sky is seen where nothing is in the way.
-    fn see_sky(
-        &self,
-        job: &Job<'_>,
-        sky: &Sky,
-        world_from_observer: &Lorentz<terrell_geodesic::World, Observer>,
-        weight: f32,
-        centre: bool,
-        rows: &mut Rows<'_>,
-    ) {
-        let spread = f64::from(weight.sqrt());
-        let sight = |v: DVec3| *world_from_observer * FourVector::seen_from(v.normalize());
-        let to = |step: DVec2| {
-            let there = job.lens.direction(self.at + step * spread).unwrap_or(self.direction);
-            sight(there).xyz().normalize_or(DVec3::Z)
-        };
-        let here = sight(self.direction);
-        let (direction, doppler) = (here.xyz().normalize_or(DVec3::Z), 1.0 / here.t.abs());
-        let steps = [DVec2::X, DVec2::Y].map(|step| to(step) - direction);
-        let light = job.shading.sky(doppler, sky.color(direction, steps));
-        let color = &mut rows.color[self.pixel];
-        *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
-        if centre {
-            rows.doppler[self.pixel] = doppler as f32;
-        }
-    }
 }

@@ -13,8 +13,8 @@ use std::time::Duration;
 /// mesh is too large or too small for them; corners of triangles are exact.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    pub nodes: Vec<Node>,
-    /// In the order of the nodes that hold them.
+    branches: Vec<Branch>,
+    /// In the order of the boxes that hold them.
     leaves: Vec<Indexed>,
     /// The corners of these, in the order in which they are met first, so that what is near in space is near in memory.
     vertices: Vec<DVec3>,
@@ -28,16 +28,50 @@ pub(super) struct Tree {
     pub radius: f64,
 }
 
-/// A box; its children, which lie side by side, or its triangles.
+/// How many boxes are looked at together.
+pub(super) const WIDE: usize = 4;
+
+/// A number of each.
+pub(super) type EachBox = [f64; WIDE];
+
+/// Boxes side by side, and what is in them. Those that are not needed are empty, and turned inside out.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub(super) struct Node {
-    pub min: [f32; 3],
+#[repr(C, align(64))]
+pub(super) struct Branch {
+    pub min: [[f32; WIDE]; 3],
+    pub max: [[f32; WIDE]; 3],
+    inside: [Inside; WIDE],
+}
+
+/// What is in a box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inside {
+    /// Number of a branch, or of the first of some triangles.
+    first: u32,
+    /// How many triangles there are, or [`BRANCH`].
+    count: u32,
+}
+
+/// No box has as many triangles.
+const BRANCH: u32 = u32::MAX;
+
+/// What is in a box that is met, still to be looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    /// Where the box begins.
+    pub near: f64,
+    pub inside: Inside,
+}
+
+/// A box as trees are built of them; its children, which lie side by side, or its triangles.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    min: [f32; 3],
+    max: [f32; 3],
     /// Of the children, or of the triangles.
-    pub first: u32,
-    pub max: [f32; 3],
+    first: u32,
     /// How many triangles; 0 where there are children.
-    pub count: u32,
+    count: u32,
 }
 
 /// A triangle, where it is looked for.
@@ -102,7 +136,7 @@ impl Tree {
             Indexed { corners: mesh.triangles[face as usize].map(&mut number), face: face | side }
         };
         let leaves = order.iter().map(leaf).collect();
-        Self { nodes, leaves, vertices, ..empty }
+        Self { branches: branches(&nodes), leaves, vertices, ..empty }
     }
 
     /// Without boxes, for who knows where to look.
@@ -150,9 +184,121 @@ impl Tree {
         let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
         let vertices = (0..mesh.vertex_count() as u32).into_par_iter().with_min_len(1 << 12);
         let radius = vertices.map(|v| mesh.vertex(v).distance(centre)).reduce(|| 0.0, f64::max);
-        let (nodes, leaves, vertices) = Default::default();
-        Self { nodes, leaves, vertices, mesh: None, centre, scale, radius }
+        let (branches, leaves, vertices) = Default::default();
+        Self { branches, leaves, vertices, mesh: None, centre, scale, radius }
     }
+
+    /// All of it, if there is anything.
+    pub fn root(&self) -> Option<Inside> {
+        (!self.branches.is_empty()).then_some(Inside { first: 0, count: BRANCH })
+    }
+
+    /// What is in a box: other boxes, or triangles.
+    #[inline(always)]
+    pub fn look(&self, inside: Inside) -> Result<&Branch, std::ops::Range<u32>> {
+        let Inside { first, count } = inside;
+        if count == BRANCH { Ok(&self.branches[first as usize]) } else { Err(first..first + count) }
+    }
+
+    /// Puts what is in those boxes of a branch that are met onto a stack, the nearest on top.
+    #[inline(always)]
+    pub fn push(&self, branch: &Branch, near: &EachBox, met: [bool; WIDE], stack: &mut Vec<Part>) {
+        let bottom = stack.len();
+        for i in 0..WIDE {
+            if !met[i] {
+                continue;
+            }
+            let part = Part { near: near[i], inside: branch.inside[i] };
+            self.fetch(part.inside);
+            let mut place = stack.len();
+            stack.push(part);
+            while place > bottom && stack[place - 1].near < part.near {
+                stack[place] = stack[place - 1];
+                place -= 1;
+            }
+            stack[place] = part;
+        }
+    }
+
+    /// Asks for what is in a box, which will be needed soon.
+    #[inline(always)]
+    pub fn fetch(&self, inside: Inside) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+            let first = inside.first as usize;
+            let ask = |address: *const i8| {
+                // SAFETY: any processor has it, and any address will do.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(address) }
+            };
+            if inside.count == BRANCH {
+                let branch: *const i8 = self.branches.as_ptr().wrapping_add(first).cast();
+                ask(branch);
+                ask(branch.wrapping_add(64));
+            } else {
+                ask(self.leaves.as_ptr().wrapping_add(first).cast());
+            }
+        }
+    }
+}
+
+impl Branch {
+    const EMPTY: Self = Self {
+        min: [[f32::INFINITY; WIDE]; 3],
+        max: [[f32::NEG_INFINITY; WIDE]; 3],
+        inside: [Inside { first: 0, count: 0 }; WIDE],
+    };
+
+    /// What is in one of the boxes.
+    #[inline(always)]
+    pub fn inside(&self, i: usize) -> Inside {
+        self.inside[i]
+    }
+}
+
+impl Node {
+    fn area(&self) -> f32 {
+        let [x, y, z] = std::array::from_fn(|k| self.max[k] - self.min[k]);
+        x * y + y * z + z * x
+    }
+}
+
+/// The tree of nodes, with as many boxes at a time as are looked at together: the largest are replaced by what is in them.
+fn branches(nodes: &[Node]) -> Vec<Branch> {
+    let mut branches = Vec::new();
+    if nodes.is_empty() {
+        return branches;
+    }
+    branches.push(Branch::EMPTY);
+    // Branches to be filled, and from which nodes.
+    let mut stack = vec![(0, vec![0])];
+    while let Some((number, mut boxes)) = stack.pop() {
+        while boxes.len() < WIDE {
+            let opened = (0..boxes.len()).filter(|i| nodes[boxes[*i]].count == 0);
+            let area = |i: &usize| nodes[boxes[*i]].area();
+            let Some(largest) = opened.max_by(|a, b| area(a).total_cmp(&area(b))) else { break };
+            let first = nodes[boxes[largest]].first as usize;
+            boxes[largest] = first;
+            boxes.insert(largest + 1, first + 1);
+        }
+        for (i, node) in boxes.into_iter().map(|node| &nodes[node]).enumerate() {
+            let Node { min, max, first, count } = *node;
+            let inside = if count > 0 {
+                Inside { first, count }
+            } else {
+                let below = branches.len();
+                branches.push(Branch::EMPTY);
+                stack.push((below, vec![first as usize, first as usize + 1]));
+                Inside { first: below as u32, count: BRANCH }
+            };
+            let branch: &mut Branch = &mut branches[number];
+            for k in 0..3 {
+                (branch.min[k][i], branch.max[k][i]) = (min[k], max[k]);
+            }
+            branch.inside[i] = inside;
+        }
+    }
+    branches
 }
 
 /// More boxes with their middles in one place than a tree for good meshes is built of: it would become a chain.
@@ -174,6 +320,8 @@ fn crowd(bounds: &[Bounds]) -> usize {
 fn built(bounds: &[Bounds]) -> (Vec<Node>, Vec<u32>) {
     let params =
         if bounds.len() > 200_000 { BvhBuildParams::fast_build() } else { BvhBuildParams::medium_build() };
+    // A box costs half of what a triangle does.
+    let params = BvhBuildParams { max_prims_per_leaf: 4, collapse_traversal_cost: 0.5, ..params };
     let tree = build_bvh2(bounds, params, &mut Duration::default());
     let node = |n: &obvhs::bvh2::node::Bvh2Node| Node {
         min: n.aabb().min.to_array(),
@@ -217,27 +365,6 @@ fn halved(bounds: &[Bounds]) -> (Vec<Node>, Vec<u32>) {
     (nodes, order)
 }
 
-impl Tree {
-    /// Asks for what is below a node, which will be needed soon.
-    #[inline(always)]
-    pub fn fetch(&self, node: &Node) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            let first = node.first as usize;
-            let ask = |address: *const i8| {
-                // SAFETY: any processor has it, and any address will do.
-                unsafe { _mm_prefetch::<_MM_HINT_T0>(address) }
-            };
-            if node.count == 0 {
-                ask(self.nodes.as_ptr().wrapping_add(first).cast());
-            } else {
-                ask(self.leaves.as_ptr().wrapping_add(first).cast());
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -254,23 +381,27 @@ mod tests {
                 let mesh = mesh.clone().placed(&glam::DAffine3::from_scale(DVec3::splat(factor)));
                 let tree = Tree::new(&mesh);
                 let mut found = vec![0; mesh.triangles.len()];
-                let mut stack = vec![(0usize, vec![])];
-                while let Some((index, mut around)) = stack.pop() {
-                    let node = tree.nodes[index];
-                    around.push(node);
-                    if node.count == 0 {
-                        stack.push((node.first as usize, around.clone()));
-                        stack.push((node.first as usize + 1, around));
-                        continue;
-                    }
-                    for leaf in (node.first..node.first + node.count).map(|number| tree.leaf(number)) {
+                let mut stack = vec![(tree.root().unwrap(), vec![])];
+                while let Some((inside, around)) = stack.pop() {
+                    let leaves = match tree.look(inside) {
+                        Ok(branch) => {
+                            for i in 0..WIDE {
+                                let [min, max] =
+                                    [&branch.min, &branch.max].map(|c| c.map(|c| f64::from(c[i])));
+                                let mut around = around.clone();
+                                around.push((min, max));
+                                stack.push((branch.inside(i), around));
+                            }
+                            continue;
+                        }
+                        Err(leaves) => leaves,
+                    };
+                    for leaf in leaves.map(|number| tree.leaf(number)) {
                         found[leaf.face as usize] += 1;
                         for corner in mesh.corners(leaf.face as usize) {
                             let at = (corner - tree.centre) * tree.scale;
-                            for node in &around {
-                                assert!((0..3).all(|i| {
-                                    f64::from(node.min[i]) <= at[i] && at[i] <= f64::from(node.max[i])
-                                }));
+                            for (min, max) in &around {
+                                assert!((0..3).all(|i| min[i] <= at[i] && at[i] <= max[i]));
                             }
                         }
                     }

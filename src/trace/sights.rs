@@ -1,0 +1,117 @@
+use super::beam::{NONE, RAYS};
+use super::tile::SIDE;
+use crate::scene::{Lens, Projection};
+use glam::{DVec2, DVec3};
+
+/// Lines of sight of a tile and what they meet, side by side.
+#[repr(align(64))]
+pub(super) struct Sights {
+    /// How many there are.
+    pub count: usize,
+    /// Of the pixels in the band.
+    pub pixels: [u32; RAYS],
+    /// Where they go through the picture, in pixels.
+    at: [[f64; RAYS]; 2],
+    /// Lengths and components, observer's axes.
+    pub lines: [[f64; RAYS]; 4],
+    /// 1/s of the nearest hit, in units of the line; 0 for none.
+    pub nearness: [f64; RAYS],
+    /// What is hit, by its number among the tile's faces; [`NONE`] for nothing.
+    pub faces: [u32; RAYS],
+    /// The directions in the rest frame of what is hit.
+    pub rest: [[f64; RAYS]; 3],
+    /// Its Doppler factors.
+    pub dopplers: [f64; RAYS],
+}
+
+impl Default for Sights {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            pixels: [0; RAYS],
+            at: [[0.0; RAYS]; 2],
+            // Any that can be boosted, where there are none.
+            lines: [[1.0; RAYS], [0.0; RAYS], [0.0; RAYS], [1.0; RAYS]],
+            nearness: [0.0; RAYS],
+            faces: [NONE; RAYS],
+            rest: [[0.0; RAYS]; 3],
+            dopplers: [1.0; RAYS],
+        }
+    }
+}
+
+impl Sights {
+    /// Makes them those of a sample of all pixels of a tile, `top` in the picture; they meet nothing yet.
+    pub fn aim(&mut self, lens: &Lens, [left, top]: [u32; 2], [width, height]: [u32; 2], sample: [f64; 2]) {
+        const ACROSS: usize = SIDE as usize;
+        let place = |from: u32, sample: f64| {
+            std::array::from_fn::<f64, ACROSS, _>(|i| f64::from(from + i as u32) + sample)
+        };
+        let (x, y) = (place(left, sample[0]), place(top, sample[1]));
+        let [width, height] = [width, height].map(|n| n as usize);
+        let picture_width = lens.width() as usize;
+        let pixel = |line: usize, column: usize| (line * picture_width + left as usize + column) as u32;
+        if lens.projection() == Projection::Pinhole {
+            // A column has one x, and a line one y.
+            let direction = |x: f64, y: f64| lens.direction(DVec2::new(x, y)).unwrap_or(DVec3::Z);
+            let (across, down) = (x.map(|x| direction(x, y[0]).x), y.map(|y| direction(x[0], y).y));
+            self.count = width * height;
+            for line in 0..height {
+                let row = line * width..(line + 1) * width;
+                self.lines[1][row.clone()].copy_from_slice(&across[..width]);
+                self.lines[2][row.clone()].fill(down[line]);
+                self.at[0][row.clone()].copy_from_slice(&x[..width]);
+                self.at[1][row.clone()].fill(y[line]);
+                for (column, of) in self.pixels[row].iter_mut().enumerate() {
+                    *of = pixel(line, column);
+                }
+            }
+            let [lengths, x, y, z] = &mut self.lines;
+            z.fill(1.0);
+            for (i, length) in lengths.iter_mut().enumerate() {
+                *length = (x[i] * x[i] + y[i] * y[i] + 1.0).sqrt();
+            }
+        } else {
+            self.count = 0;
+            for (line, y) in y[..height].iter().enumerate() {
+                for (column, x) in x[..width].iter().enumerate() {
+                    let Some(direction) = lens.direction(DVec2::new(*x, *y)) else { continue };
+                    let i = self.count;
+                    self.count += 1;
+                    self.pixels[i] = pixel(line, column);
+                    [self.at[0][i], self.at[1][i]] = [*x, *y];
+                    self.lines[0][i] = direction.length();
+                    for k in 0..3 {
+                        self.lines[k + 1][i] = direction[k];
+                    }
+                }
+            }
+        }
+        self.nearness.fill(0.0);
+        self.faces.fill(NONE);
+    }
+
+    /// Where a line of sight goes through the picture, in pixels.
+    #[inline]
+    pub fn place(&self, i: usize) -> DVec2 {
+        DVec2::new(self.at[0][i], self.at[1][i])
+    }
+
+    /// A line of sight, observer's axes.
+    #[inline]
+    pub fn direction(&self, i: usize) -> DVec3 {
+        DVec3::new(self.lines[1][i], self.lines[2][i], self.lines[3][i])
+    }
+
+    /// The same in the rest frame of what it meets.
+    #[inline]
+    pub fn rest_direction(&self, i: usize) -> DVec3 {
+        DVec3::new(self.rest[0][i], self.rest[1][i], self.rest[2][i])
+    }
+
+    /// Where it meets that, from the observer in its rest frame.
+    #[inline]
+    pub fn point(&self, i: usize) -> DVec3 {
+        self.rest_direction(i) / self.nearness[i]
+    }
+}
