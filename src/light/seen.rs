@@ -5,9 +5,7 @@ use super::shading::{MaterialShading, SceneLight, times};
 use super::{DopplerAt, Point, Shading, Source, gloss};
 use crate::color::{Coloring, false_color};
 use crate::scene::{Colors, EmissionLaw, Gloss, LightKind};
-#[cfg(feature = "gpu")]
-use crate::spectrum::DopplerTable;
-use crate::spectrum::{Beyond, Near, Spectrum, luminance};
+use crate::spectrum::{Beyond, DopplerTable, Near, Spectrum, luminance};
 use glam::DVec3;
 #[cfg(feature = "gpu")]
 use std::sync::Arc;
@@ -104,17 +102,34 @@ impl<'a> SurfaceLight<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct Glow<'a> {
     coloring: Coloring,
-    material: &'a MaterialShading,
-    own: [f32; 3],
-    /// Of its table, where it was looked at last.
-    near: Near,
+    shift: Shift<'a>,
 }
 
-impl Glow<'_> {
+/// How what it shines with depends on the Doppler factor.
+#[derive(Clone, Copy)]
+enum Shift<'a> {
+    /// By a table, and where that was looked at last.
+    Table { table: &'a DopplerTable, own: [f32; 3], near: Near },
+    /// As any colour does.
+    Beamed([f32; 3]),
+}
+
+impl<'a> Glow<'a> {
+    fn new(material: &'a MaterialShading, coloring: Coloring, own: [f32; 3]) -> Self {
+        let shift = match material.table(coloring) {
+            Some(table) => Shift::Table { table, own, near: Near::default() },
+            None => Shift::Beamed(material.unshifted(coloring, own)),
+        };
+        Self { coloring, shift }
+    }
+
     /// What of it is seen at a Doppler factor; its logarithm matters only for spectra.
     #[inline]
     pub fn radiance(&mut self, doppler: f64, logarithm: f64) -> [f32; 3] {
-        finite(self.material.shines_near(self.coloring, doppler, logarithm, self.own, &mut self.near))
+        finite(match &mut self.shift {
+            Shift::Table { table, own, near } => table.color_near(logarithm, *own, near),
+            Shift::Beamed(unshifted) => beamed(self.coloring, doppler, *unshifted),
+        })
     }
 }
 
@@ -232,7 +247,7 @@ impl<'a> SeenShading<'a> {
         let coloring = self.shading.coloring;
         let material = &self.shading.bodies[body].materials[material];
         let even = coloring != Coloring::Doppler && material.is_even();
-        even.then(|| Glow { coloring, material, own: colors.sum(), near: Near::default() })
+        even.then(|| Glow::new(material, coloring, colors.sum()))
     }
 
     /// Linear sRGB radiance, in units of the film's white, of a sky of a colour that is seen with a Doppler factor; of none,
@@ -432,24 +447,24 @@ impl MaterialShading {
     /// What is seen of the surface's own light of the colour `own`.
     #[inline]
     fn shines(&self, coloring: Coloring, doppler: f64, own: [f32; 3]) -> [f32; 3] {
-        let logarithm = if coloring == Coloring::Spectral { ln(doppler) } else { 0.0 };
-        self.shines_near(coloring, doppler, logarithm, own, &mut Near::default())
+        match self.table(coloring) {
+            Some(table) => table.color(ln(doppler), own),
+            None => beamed(coloring, doppler, self.unshifted(coloring, own)),
+        }
     }
 
-    /// The same; the logarithm matters only for spectra, and `near` is where the table was looked at last for this colour.
+    /// The table of that by the Doppler factor, where there is one.
     #[inline]
-    fn shines_near(
-        &self,
-        coloring: Coloring,
-        doppler: f64,
-        logarithm: f64,
-        own: [f32; 3],
-        near: &mut Near,
-    ) -> [f32; 3] {
-        match (&self.own, coloring) {
-            (Some(table), Coloring::Spectral) => table.color_near(logarithm, own, near),
-            (_, Coloring::Bolometric) => beamed(coloring, doppler, own.map(|v| v * self.strength)),
-            _ => beamed(coloring, doppler, times(&self.unshifted, own)),
+    fn table(&self, coloring: Coloring) -> Option<&DopplerTable> {
+        self.own.as_deref().filter(|_| coloring == Coloring::Spectral)
+    }
+
+    /// What is seen of it without shift and beaming, where there is none.
+    #[inline]
+    fn unshifted(&self, coloring: Coloring, own: [f32; 3]) -> [f32; 3] {
+        match coloring {
+            Coloring::Bolometric => own.map(|v| v * self.strength),
+            _ => times(&self.unshifted, own),
         }
     }
 }

@@ -69,9 +69,13 @@ impl<'a> Bounder<'a> {
         fits.then(|| points.map(|p| middle + DVec2::new(p.x, -p.y) * (focal / p.z)))
     }
 
-    /// The pixels whose samples may see something within the convex hull of points, in the camera's axes.
+    /// The pixels whose samples may see something within a hull, in the camera's axes.
     #[inline]
-    pub fn of_hull(&self, points: &[DVec3; 6]) -> [Option<Rect>; 2] {
+    pub fn of_hull(&self, hull: &Hull) -> [Option<Rect>; 2] {
+        if let Some(rect) = self.of_small(hull) {
+            return [rect, None];
+        }
+        let points = &hull.points();
         match self.lens.projection() {
             Projection::Pinhole => {
                 if let Some(places) = self.projected(points) {
@@ -88,6 +92,27 @@ impl<'a> Bounder<'a> {
             Projection::Fisheye => self.of_fisheye(cone(points)),
             Projection::Panorama => self.of_panorama(cone(points)),
         }
+    }
+
+    /// The same of one that is small on a pinhole's picture, and moved by little there; none for others.
+    #[inline]
+    fn of_small(&self, Hull { corners: [a, b, c], beside, .. }: &Hull) -> Option<Option<Rect>> {
+        let nearest = a.z.min(b.z).min(c.z);
+        // Also false for NaN.
+        if self.lens.projection() != Projection::Pinhole || !(nearest > 0.0 && *beside < 1e-3 * nearest) {
+            return None;
+        }
+        let focal = self.lens.focal().x;
+        let place = |p: &DVec3| DVec2::new(p.x, -p.y) * (focal / p.z);
+        let (a, b, c) = (place(a), place(b), place(c));
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        // What is moved by δ at z is seen elsewhere by (δ/z)(f + |place|), to first order, and by a thousandth of it more.
+        let off = 1.01 * (beside / nearest) * (focal + low.abs().max(high.abs()).max_element());
+        let middle = self.lens.middle();
+        let (low, high) = (middle + low - off, middle + high + off);
+        // Farther out, rounding is too large on the picture.
+        (off < 1.0 && low.abs().max(high.abs()).max_element() < 1e6)
+            .then(|| self.rect([low.x, high.x], [low.y, high.y]))
     }
 
     fn everything(&self) -> Option<Rect> {
@@ -164,8 +189,25 @@ impl<'a> Bounder<'a> {
     }
 }
 
-/// Points, observer's axes, in whose convex hull a triangle is seen; none for one that is not seen at all. Its corners are at
-/// `offsets` from the observer in the rest frame, and seen at `seen`; `axis` is the map's in the observer's axes.
+/// Where a triangle is seen, observer's axes: in the convex hull of its corners and of those moved along.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hull {
+    corners: [DVec3; 3],
+    along: DVec3,
+    /// The length of that.
+    beside: f64,
+}
+
+impl Hull {
+    /// All the points.
+    pub fn points(&self) -> [DVec3; 6] {
+        let ([a, b, c], along) = (self.corners, self.along);
+        [a, b, c, a + along, b + along, c + along]
+    }
+}
+
+/// What a triangle is seen within; none for one that is not seen at all. Its corners are at `offsets` from the observer in the
+/// rest frame, and seen at what `seen` says; `axis` is the map's in the observer's axes.
 ///
 /// That needs no cutting. Between its corners, a triangle is seen beside the flat one between their apparent places: along
 /// the motion, by γβ(linear r′ − r′), which is at most γβ L²/6r for a longest side L that is no nearer than r, since r′ is
@@ -175,9 +217,9 @@ pub(crate) fn hull(
     map: &ApparentMap,
     axis: DVec3,
     offsets: [DVec3; 3],
-    seen: [DVec3; 3],
+    seen: impl FnOnce() -> [DVec3; 3],
     one_sided: bool,
-) -> Option<[DVec3; 6]> {
+) -> Option<Hull> {
     let [a, b, c] = offsets;
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);
@@ -192,10 +234,8 @@ pub(crate) fn hull(
         // The plane's distance says more.
         nearest = nearest.max((height / normal.length()).abs());
     }
-    let beside = map.speed() * (side * side) / (6.0 * nearest);
-    let [a, b, c] = seen;
-    let along = axis * (beside * (1.0 + 1e-9));
-    Some([a, b, c, a + along, b + along, c + along])
+    let beside = map.speed() * (side * side) / (6.0 * nearest) * (1.0 + 1e-9);
+    Some(Hull { corners: seen(), along: axis * beside, beside })
 }
 
 /// The cone of directions that holds points' convex hull: unit axis and half-angle, a little wide. None where it is not

@@ -1,6 +1,6 @@
 use super::stage::Target;
 use super::tile::SIDE;
-use crate::raster::{Bounder, Rect, SLACK_PX, hull};
+use crate::raster::{Bounder, Hull, Rect, SLACK_PX, hull};
 use crate::relativity::{Points, PointsMut};
 use crate::scene::Lens;
 use glam::{DVec2, DVec3};
@@ -52,11 +52,11 @@ impl Lists {
             .map(|task| {
                 let mut found = Found::default();
                 for number in (task * TASK..count.min((task + 1) * TASK)).map(|n| n as u32) {
-                    let Some(points) = bounds.hull(number) else { continue };
-                    for Rect { x, y } in bounds.bounder.of_hull(&points).into_iter().flatten() {
+                    let Some(seen) = bounds.hull(number) else { continue };
+                    for Rect { x, y } in bounds.bounder.of_hull(&seen).into_iter().flatten() {
                         let [x, y] = [x, y].map(|[from, to]| [from / SIDE, to.div_ceil(SIDE)]);
                         if (x[1] - x[0]) * (y[1] - y[0]) > MANY {
-                            let hull = bounds.bounder.projected(&points);
+                            let hull = bounds.bounder.projected(&seen.points());
                             found.large.push(Large { number, tiles: Rect { x, y }, hull });
                             continue;
                         }
@@ -163,14 +163,21 @@ impl<'a> Bounds<'a> {
         Self { bounder, seen, axis: target.map.axis_observer(), target }
     }
 
-    /// Points, observer's axes, in whose convex hull a triangle is seen; none for one that is not seen at all.
+    /// What a triangle is seen within, observer's axes; none for one that is not seen at all.
     #[inline]
-    fn hull(&self, number: u32) -> Option<[DVec3; 6]> {
+    fn hull(&self, number: u32) -> Option<Hull> {
         let Target { mesh, map, tree, .. } = self.target;
         let leaf = tree.leaf(number);
-        let offsets = leaf.corners.map(|corner| map.offset_rest(corner));
-        let place = |v: u32| DVec3::from_array([0, 1, 2].map(|k| self.seen[k][v as usize]));
-        hull(map, self.axis, offsets, mesh.triangles[leaf.face as usize].map(place), leaf.one_sided)
+        let [a, b, c] = leaf.corners;
+        let offsets = [map.offset_rest(a), map.offset_rest(b), map.offset_rest(c)];
+        let [x, y, z] = &self.seen;
+        let place = |v: u32| DVec3::new(x[v as usize], y[v as usize], z[v as usize]);
+        // Looked up only of what is not hidden.
+        let seen = || {
+            let [a, b, c] = mesh.triangles[leaf.face as usize];
+            [place(a), place(b), place(c)]
+        };
+        hull(map, self.axis, offsets, seen, leaf.one_sided)
     }
 }
 
@@ -218,7 +225,7 @@ mod tests {
             let target = &stage.targets[0];
             let bounds = Bounds::new(target, &lens, [[0.5; 2]; 2]);
             let lists = Lists::new(target, &lens, [[0.5; 2]; 2]);
-            let hull = bounds.hull(0).unwrap();
+            let hull = bounds.hull(0).unwrap().points();
             let most = hull[3] - hull[0];
             for step in 0..200 {
                 let (u, v) = (f64::from(step % 14) / 14.0, f64::from(step / 14) / 15.0);

@@ -36,13 +36,13 @@ pub(super) struct Target {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outline {
     axis: DVec3,
-    half_angle: f64,
+    /// Of half its opening.
     cosine: f64,
     sine: f64,
 }
 
 impl Outline {
-    const EVERYWHERE: Self = Self { axis: DVec3::Z, half_angle: 4.0, cosine: -1.0, sine: 0.0 };
+    const EVERYWHERE: Self = Self { axis: DVec3::Z, cosine: -1.0, sine: 0.0 };
 
     /// Of a sphere in the rest frame. The plane that cuts its circle from the rest sky is a four-vector, and is boosted.
     fn new(map: &ApparentMap, tree: &Tree, camera: &Camera, motion: &Motion) -> Self {
@@ -68,16 +68,16 @@ impl Outline {
             return Self::EVERYWHERE;
         }
         let (sine, cosine) = half_angle.sin_cos();
-        Self { axis: plane.xyz().normalize_or(DVec3::Z), half_angle, cosine, sine }
+        Self { axis: plane.xyz().normalize_or(DVec3::Z), cosine, sine }
     }
 
-    /// Whether a circle of directions and this one have any in common.
+    /// Whether a circle of directions and this one may have any in common.
     #[inline]
     pub fn meets(&self, axis: DVec3, half_angle: f64) -> bool {
-        // By bounds of the cosine of both angles together first, which is cheaper.
+        // The cosine of both angles together is no less.
         let least =
             (self.cosine * (1.0 - 0.5 * half_angle * half_angle)).min(self.cosine) - self.sine * half_angle;
-        self.axis.dot(axis) > least - 1e-9 && angle(self.axis, axis) <= self.half_angle + half_angle
+        self.axis.dot(axis) > least - 1e-9
     }
 }
 
@@ -142,11 +142,6 @@ impl Target {
             }
         }
     }
-}
-
-/// Between unit vectors.
-fn angle(a: DVec3, b: DVec3) -> f64 {
-    a.cross(b).length().atan2(a.dot(b))
 }
 
 impl Stage {
