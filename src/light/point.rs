@@ -18,14 +18,16 @@ impl Point {
     /// A point the observer sees, whose mesh has the normal `normal`, on a surface that lies square to `facing`: both are
     /// turned so that the observer sees the surface's side they are on.
     pub fn new(offset: DVec3, facing: DVec3, normal: DVec3) -> Self {
-        let event = FourVector::from_parts(-offset.length(), offset);
-        Self::seen_from(event, -offset.normalize_or(DVec3::Z), facing, normal)
+        let length = offset.length();
+        let to_eye = -offset / length;
+        let to_eye = if to_eye.is_finite() { to_eye } else { -DVec3::Z };
+        Self::seen_from(FourVector::from_parts(-length, offset), to_eye, facing, normal)
     }
 
     /// A point at any event, from the observer's, that is seen from the direction `to_eye`, a unit vector.
     pub fn seen_from(event: FourVector<Rest>, to_eye: DVec3, facing: DVec3, normal: DVec3) -> Self {
-        let normal = turned(to_eye, facing, normal)
-            .normalize_or(turned(to_eye, facing, facing).normalize_or(DVec3::Z));
+        let unit = |normal: DVec3| turned(to_eye, facing, normal).try_normalize();
+        let normal = unit(normal).or_else(|| unit(facing)).unwrap_or(DVec3::Z);
         Self { offset: event.xyz(), ago: -event.t, normal, to_eye }
     }
 

@@ -419,7 +419,7 @@ impl Arriving {
             flat: irradiance * lamp,
             bolometric: irradiance * square,
             spectral: irradiance / square,
-            row: lamp.ln(),
+            row: ln(lamp),
         }
     }
 
