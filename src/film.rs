@@ -111,7 +111,8 @@ impl Film {
         self.bands(16).for_each(|mut rows| rows.clear());
     }
 
-    /// Takes the given size. What was there stays, to be cleared by who draws a part, which is quicker than all at once.
+    /// Takes the given size. What is there then means nothing: who draws a part clears it first, which is quicker than clearing
+    /// all at once.
     pub(crate) fn resize(&mut self, width: u32, height: u32) {
         (self.width, self.height) = (width, height);
         let pixels = width as usize * height as usize;

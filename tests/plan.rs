@@ -96,7 +96,7 @@ fn explanations_agree_with_plans() {
         let told = Explanation::new(&scene, &vec![&camera; pictures], &Options::default());
         told.methods[0].reason.clone()
     };
-    assert!(exact(1).contains("lists") && exact(31).contains("boxes"));
+    assert!(exact(100).contains("lists") && exact(101).contains("boxes"));
     // It was not asked for, so it is not looked for.
     let cpu = Options { raster: Raster::Cpu, ..Options::default() };
     let told = Explanation::new(&scene, &[&camera], &cpu);

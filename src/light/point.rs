@@ -19,8 +19,7 @@ impl Point {
     /// turned so that the observer sees the surface's side they are on.
     pub fn new(offset: DVec3, facing: DVec3, normal: DVec3) -> Self {
         let length = offset.length();
-        let to_eye = -offset / length;
-        let to_eye = if to_eye.is_finite() { to_eye } else { -DVec3::Z };
+        let to_eye = if length > 0.0 && length.is_finite() { -offset / length } else { -DVec3::Z };
         Self::seen_from(FourVector::from_parts(-length, offset), to_eye, facing, normal)
     }
 

@@ -110,26 +110,34 @@ pub(crate) struct Glow<'a> {
 enum Shift<'a> {
     /// By a table, and where that was looked at last.
     Table { table: &'a DopplerTable, own: [f32; 3], near: Near },
-    /// As any colour does.
-    Beamed([f32; 3]),
+    /// By a power of it, from what there is without.
+    Power([f32; 3]),
 }
 
-impl<'a> Glow<'a> {
+impl<'a> Shift<'a> {
+    #[inline]
     fn new(material: &'a MaterialShading, coloring: Coloring, own: [f32; 3]) -> Self {
-        let shift = match material.table(coloring) {
-            Some(table) => Shift::Table { table, own, near: Near::default() },
-            None => Shift::Beamed(material.unshifted(coloring, own)),
-        };
-        Self { coloring, shift }
+        match (&material.own, coloring) {
+            (Some(table), Coloring::Spectral) => Self::Table { table, own, near: Near::default() },
+            (_, Coloring::Bolometric) => Self::Power(own.map(|v| v * material.strength)),
+            _ => Self::Power(times(&material.unshifted, own)),
+        }
     }
 
+    #[inline]
+    fn at(&mut self, coloring: Coloring, doppler: f64, logarithm: impl FnOnce() -> f64) -> [f32; 3] {
+        match self {
+            Self::Table { table, own, near } => table.color_near(logarithm(), *own, near),
+            Self::Power(unshifted) => beamed(coloring, doppler, *unshifted),
+        }
+    }
+}
+
+impl Glow<'_> {
     /// What of it is seen at a Doppler factor; its logarithm matters only for spectra.
     #[inline]
     pub fn radiance(&mut self, doppler: f64, logarithm: f64) -> [f32; 3] {
-        finite(match &mut self.shift {
-            Shift::Table { table, own, near } => table.color_near(logarithm, *own, near),
-            Shift::Beamed(unshifted) => beamed(self.coloring, doppler, *unshifted),
-        })
+        finite(self.shift.at(self.coloring, doppler, || logarithm))
     }
 }
 
@@ -247,7 +255,7 @@ impl<'a> SeenShading<'a> {
         let coloring = self.shading.coloring;
         let material = &self.shading.bodies[body].materials[material];
         let even = coloring != Coloring::Doppler && material.is_even();
-        even.then(|| Glow::new(material, coloring, colors.sum()))
+        even.then(|| Glow { coloring, shift: Shift::new(material, coloring, colors.sum()) })
     }
 
     /// Linear sRGB radiance, in units of the film's white, of a sky of a colour that is seen with a Doppler factor; of none,
@@ -447,25 +455,7 @@ impl MaterialShading {
     /// What is seen of the surface's own light of the colour `own`.
     #[inline]
     fn shines(&self, coloring: Coloring, doppler: f64, own: [f32; 3]) -> [f32; 3] {
-        match self.table(coloring) {
-            Some(table) => table.color(ln(doppler), own),
-            None => beamed(coloring, doppler, self.unshifted(coloring, own)),
-        }
-    }
-
-    /// The table of that by the Doppler factor, where there is one.
-    #[inline]
-    fn table(&self, coloring: Coloring) -> Option<&DopplerTable> {
-        self.own.as_deref().filter(|_| coloring == Coloring::Spectral)
-    }
-
-    /// What is seen of it without shift and beaming, where there is none.
-    #[inline]
-    fn unshifted(&self, coloring: Coloring, own: [f32; 3]) -> [f32; 3] {
-        match coloring {
-            Coloring::Bolometric => own.map(|v| v * self.strength),
-            _ => times(&self.unshifted, own),
-        }
+        Shift::new(self, coloring, own).at(coloring, doppler, || ln(doppler))
     }
 }
 

@@ -99,7 +99,8 @@ impl<'a> Bounder<'a> {
     fn of_small(&self, Hull { corners: [a, b, c], beside, .. }: &Hull) -> Option<Option<Rect>> {
         let nearest = a.z.min(b.z).min(c.z);
         // Also false for NaN.
-        if self.lens.projection() != Projection::Pinhole || !(nearest > 0.0 && *beside < 1e-3 * nearest) {
+        let before = a.z > 0.0 && b.z > 0.0 && c.z > 0.0;
+        if self.lens.projection() != Projection::Pinhole || !(before && *beside < 1e-3 * nearest) {
             return None;
         }
         let focal = self.lens.focal().x;

@@ -39,7 +39,8 @@ impl Near {
     fn new(low: usize, nodes: &[Node], own: [f32; 3]) -> Self {
         let color = |i: usize| {
             let [r, g, b] = nodes[i].map(Vec4::from_array);
-            r * own[0] + g * own[1] + b * own[2]
+            // So that differences do not leave f32.
+            (r * own[0] + g * own[1] + b * own[2]).clamp(Vec4::splat(-1e36), Vec4::splat(1e36))
         };
         let [a, b, c, d] = [color(0), color(1), color(2), color(3)];
         const SIXTH: f32 = 1.0 / 6.0;

@@ -25,7 +25,7 @@ impl Directed {
         DVec3::from_array(self.directions.each_ref().map(|c| c[i]))
     }
 
-    /// One more, that of another beam.
+    /// One more, of other rays.
     pub fn push_of(&mut self, other: &Self, i: usize) {
         self.dopplers[self.count] = other.dopplers[i];
         self.push(other.direction(i), other.nearness[i]);

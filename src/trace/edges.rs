@@ -7,7 +7,7 @@ pub(super) const TOGETHER: usize = 4;
 /// A number of each.
 pub(super) type Each = [f64; TOGETHER];
 
-/// The same for rays.
+/// The same, as rays are tested.
 pub(super) type EachNarrow = [f32; TOGETHER];
 
 /// Triangles as a beam meets them, side by side: functions c + a·u + b·v of slopes from the middle.

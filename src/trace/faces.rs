@@ -59,7 +59,7 @@ impl<'a> Face<'a> {
 /// Slots of the table in which triangles are found again.
 const SLOTS: usize = 64;
 
-/// All triangles that are met in a tile, each once or a few times.
+/// Triangles that are met in a tile, each once, or more often where there are many.
 pub(super) struct Faces<'a> {
     pub all: Vec<Face<'a>>,
     /// Numbers of those met last, by their last digits.
@@ -73,6 +73,13 @@ impl Default for Faces<'_> {
 }
 
 impl<'a> Faces<'a> {
+    /// Forgets them for another tile, or, where they are too `many` to be found again, for another sample.
+    pub fn forget(&mut self, many: bool) {
+        if !many || self.all.len() > 4 * SLOTS {
+            self.all.clear();
+        }
+    }
+
     /// The number of a triangle here.
     #[inline]
     pub fn number(&mut self, index: usize, target: &'a Target, leaf: u32) -> u32 {
@@ -82,5 +89,47 @@ impl<'a> Faces<'a> {
             self.all.push(Face::new(index, target, leaf));
         }
         *slot
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::stage::Stage;
+    use super::super::tree::Tree;
+    use super::*;
+    use crate::relativity::Motion;
+    use crate::scene::{Camera, Lens, Projection, shapes};
+    use std::sync::Arc;
+    use terrell_geodesic::{Event, Tetrad};
+
+    /// However many share a slot, and whatever was met before.
+    #[test]
+    fn numbers_are_those_of_the_triangles_asked_for() {
+        let mesh = Arc::new(shapes::sphere(2));
+        let tree = Arc::new(Tree::new(&mesh));
+        let camera = Camera {
+            observer: Tetrad::of_world(Event::origin()),
+            lens: Lens::new(Projection::Pinhole, 45.0, 8, 8).unwrap(),
+        };
+        let body = |i: usize| (i, Motion::at_rest(DVec3::splat(3.0 + i as f64)), mesh.clone(), tree.clone());
+        let stage = Stage::new(vec![body(0), body(1)], &camera, false);
+        let mut faces = Faces::default();
+        let mut random = super::super::beam::tests::random(3);
+        let mut most = 0;
+        for step in 0..5000 {
+            if step % 100 == 0 {
+                faces.forget(step % 300 != 0);
+            }
+            let index = usize::from(random() < 0.5);
+            let leaf = (random() * tree.count() as f64) as u32;
+            let number = faces.number(index, &stage.targets[index], leaf);
+            assert_eq!(number, faces.number(index, &stage.targets[index], leaf));
+            let face = &faces.all[number as usize];
+            assert_eq!((face.target, face.leaf), (index, leaf));
+            let corner = stage.targets[index].map.offset_rest(tree.leaf(leaf).corners[1]);
+            assert!((face.plane.dot(corner) - 1.0).abs() < 1e-9);
+            most = most.max(faces.all.len());
+        }
+        assert!(most > SLOTS && most <= 4 * SLOTS + 100, "{most}");
     }
 }

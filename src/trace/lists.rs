@@ -8,7 +8,8 @@ use rayon::prelude::*;
 
 /// Which triangles of one body each tile looks at: those that may be seen in it.
 ///
-/// Where they may be seen needs no cutting: bounds of six points (see [`hull`]) are all that is needed.
+/// Where they may be seen needs no cutting: bounds of six points (see [`hull`]), or of three and how far the others may be from
+/// them, are all that is needed.
 pub(super) struct Lists {
     /// Tiles of a row.
     pub columns: usize,

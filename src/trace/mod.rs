@@ -121,7 +121,7 @@ enum Finder {
 const FEW: usize = 1 << 15;
 
 /// A hierarchy takes as long to build as is lost without it in so many pictures.
-const MANY: usize = 30;
+const MANY: usize = 100;
 
 impl Finder {
     fn tree(self, mesh: &Arc<crate::scene::Mesh>) -> Arc<Tree> {
@@ -214,7 +214,7 @@ impl Tracer {
         let lists = lists.as_deref();
         let job = Job { stage: &stage, lists, lens, shading, sky, samples, vectors, to_lights, world };
         let all = samples.len();
-        let passes = if follows { PASSES.min(all) } else { 1 };
+        let passes = if follows { PASSES.min(all).max(1) } else { 1 };
         let mut traced = Traced::default();
         let mut half = Vec::new();
         for pass in 0..passes {

@@ -104,7 +104,7 @@ pub(super) fn meet([a, b, c]: [DVec3; 3], direction: DVec3) -> Option<f64> {
 
 /// How a ray meets boxes.
 pub(super) struct Slabs {
-    /// Where it begins, in the tree's units; a little outward of boxes that lie above.
+    /// Where it begins, in the tree's units; farther out than that by what it may be off, for boxes that lie above.
     low: [f64; 3],
     /// As `low`, of those that lie below.
     high: [f64; 3],
@@ -131,7 +131,7 @@ impl Slabs {
         stack.clear();
         stack.extend(tree.root().map(|inside| Part { near: from, inside }));
         while let Some(part) = stack.pop() {
-            if !is_within(part.near, far) {
+            if !overlap(part.near, far) {
                 continue;
             }
             match tree.look(part.inside) {
@@ -157,21 +157,23 @@ impl Slabs {
     fn enter(&self, branch: &Branch, from: f64, to: f64) -> (EachBox, [bool; WIDE]) {
         let (mut near, mut far) = ([from; WIDE], [to; WIDE]);
         for k in 0..3 {
+            let (below, above) = ((&branch.min[k], self.low[k]), (&branch.max[k], self.high[k]));
+            // The side where it enters, and that where it leaves.
+            let (enter, leave) = if self.inverse[k] < 0.0 { (above, below) } else { (below, above) };
             for i in 0..WIDE {
-                let a = (f64::from(branch.min[k][i]) - self.low[k]) * self.inverse[k];
-                let b = (f64::from(branch.max[k][i]) - self.high[k]) * self.inverse[k];
-                // Where one is not a number, the ray runs in a side of the box made larger, which is beside it.
-                let (first, last) = (if a < b { a } else { b }, if a > b { a } else { b });
+                let first = (f64::from(enter.0[i]) - enter.1) * self.inverse[k];
+                let last = (f64::from(leave.0[i]) - leave.1) * self.inverse[k];
+                // Not a number where it runs in a side, which then has no say.
                 near[i] = if first > near[i] { first } else { near[i] };
                 far[i] = if last < far[i] { last } else { far[i] };
             }
         }
-        (near, std::array::from_fn(|i| is_within(near[i], far[i])))
+        (near, std::array::from_fn(|i| overlap(near[i], far[i])))
     }
 }
 
 /// Whether something begins before something ends; by more than rounding can be.
 #[inline(always)]
-fn is_within(near: f64, far: f64) -> bool {
+fn overlap(near: f64, far: f64) -> bool {
     (near <= far * (1.0 + 1e-14)) | (near <= far)
 }

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 pub(super) struct Sights {
     /// How many there are.
     pub count: usize,
-    /// Of the pixels in the band.
+    /// Numbers of the pixels in the band.
     pub pixels: [u32; RAYS],
     /// Where they go through the picture, in pixels.
     at: [[f64; RAYS]; 2],
@@ -113,5 +113,42 @@ impl Sights {
     #[inline]
     pub fn point(&self, i: usize) -> DVec3 {
         self.rest_direction(i) / self.nearness[i]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// They are the lens's, of whole tiles and of parts, and none where there is no sky.
+    #[test]
+    fn lines_of_sight_are_those_of_the_lens() {
+        let mut sights = Sights::default();
+        for (projection, fov) in
+            [(Projection::Pinhole, 70.0), (Projection::Fisheye, 360.0), (Projection::Panorama, 360.0)]
+        {
+            let lens = Lens::new(projection, fov, 21, 19).unwrap();
+            let (mut count, mut expected) = (0, 0);
+            for (left, top) in [(0, 0), (8, 8), (16, 16), (16, 0)] {
+                let size = [8.min(21 - left), 8.min(19 - top)];
+                sights.aim(&lens, [left, top], size, [0.25, 0.75]);
+                for i in 0..sights.count {
+                    let (x, line) = (sights.pixels[i] % 21, sights.pixels[i] / 21);
+                    let at = DVec2::new(f64::from(x) + 0.25, f64::from(top + line) + 0.75);
+                    assert_eq!(sights.place(i), at);
+                    assert_eq!(Some(sights.direction(i)), lens.direction(at));
+                    assert_eq!(sights.lines[0][i], sights.direction(i).length());
+                    assert_eq!((sights.faces[i], sights.nearness[i]), (NONE, 0.0));
+                }
+                count += sights.count;
+                let places = (0..size[0]).flat_map(|x| (0..size[1]).map(move |y| (x, y)));
+                let is_sky = |(x, y): &(u32, u32)| {
+                    lens.direction(DVec2::new(f64::from(left + x) + 0.25, f64::from(top + y) + 0.75))
+                        .is_some()
+                };
+                expected += places.filter(is_sky).count();
+            }
+            assert_eq!(count, expected);
+        }
     }
 }

@@ -270,25 +270,26 @@ fn branches(nodes: &[Node]) -> Vec<Branch> {
         return branches;
     }
     branches.push(Branch::EMPTY);
-    // Branches to be filled, and from which nodes.
-    let mut stack = vec![(0, vec![0])];
-    while let Some((number, mut boxes)) = stack.pop() {
-        while boxes.len() < WIDE {
-            let opened = (0..boxes.len()).filter(|i| nodes[boxes[*i]].count == 0);
+    // Branches to be filled, and from which node.
+    let mut stack = vec![(0, 0)];
+    while let Some((number, node)) = stack.pop() {
+        let (mut boxes, mut count) = ([node; WIDE], 1);
+        while count < WIDE {
+            let opened = (0..count).filter(|i| nodes[boxes[*i]].count == 0);
             let area = |i: &usize| nodes[boxes[*i]].area();
             let Some(largest) = opened.max_by(|a, b| area(a).total_cmp(&area(b))) else { break };
             let first = nodes[boxes[largest]].first as usize;
-            boxes[largest] = first;
-            boxes.insert(largest + 1, first + 1);
+            (boxes[largest], boxes[count]) = (first, first + 1);
+            count += 1;
         }
-        for (i, node) in boxes.into_iter().map(|node| &nodes[node]).enumerate() {
-            let Node { min, max, first, count } = *node;
+        for (i, node) in boxes[..count].iter().enumerate() {
+            let Node { min, max, first, count } = nodes[*node];
             let inside = if count > 0 {
                 Inside { first, count }
             } else {
                 let below = branches.len();
                 branches.push(Branch::EMPTY);
-                stack.push((below, vec![first as usize, first as usize + 1]));
+                stack.push((below, *node));
                 Inside { first: below as u32, count: BRANCH }
             };
             let branch: &mut Branch = &mut branches[number];

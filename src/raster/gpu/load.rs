@@ -90,10 +90,10 @@ impl Load {
                 let mut part = Part::default();
                 for number in task * TASK..subject.mesh.triangles.len().min((task + 1) * TASK) {
                     let offsets = subject.mesh.corners(number).map(|c| subject.map.offset_rest(c));
-                    let places = subject.mesh.triangles[number].map(|v| seen[v as usize]);
+                    let places = || subject.mesh.triangles[number].map(|v| seen[v as usize]);
                     let one_sided = subject.mesh.is_one_sided(number);
-                    let Some(seen) = hull(subject.map, axis, offsets, || places, one_sided) else { continue };
-                    let points = seen.points();
+                    let Some(hull) = hull(subject.map, axis, offsets, places, one_sided) else { continue };
+                    let points = hull.points();
                     let index = part.shapes.len() as u32;
                     let before = part.figures.len();
                     let mut add = |rect| part.figures.push(quad(rect, index));
@@ -101,7 +101,7 @@ impl Load {
                         let whole = Rect { x: [0, lens.width()], y: [0, lens.height()] };
                         split(lens, &points, whole, HALVINGS, &mut add);
                     } else {
-                        bounder.of_hull(&seen).into_iter().flatten().for_each(add);
+                        bounder.of_hull(&hull).into_iter().flatten().for_each(add);
                     }
                     if part.figures.len() == before {
                         continue;
