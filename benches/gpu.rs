@@ -4,6 +4,9 @@
 //! `cargo bench --bench gpu` says which device it is; on a software driver the figures say nothing of graphics
 //! processors.
 
+#[path = "common/turns.rs"]
+mod turns;
+
 use glam::DVec3;
 use std::time::Instant;
 use terrell::film::Film;
@@ -13,6 +16,7 @@ use terrell::raster::gpu::Gpu;
 use terrell::relativity::Motion;
 use terrell::render::{Options, Raster, render_again};
 use terrell::scene::{Aim, Body, Mesh, Scene, View, builtin_scene};
+use turns::median_seconds;
 
 const REPEATS: usize = 7;
 
@@ -41,15 +45,9 @@ fn frame_ms(scene: &Scene, options: &Options) -> f64 {
     let camera = scene.camera().expect("there is a camera");
     let prepared = options.prepare(scene, [&camera]).unwrap_or_else(|e| panic!("{e}"));
     let mut film = Film::new(0, 0);
-    let mut times: Vec<f64> = (0..REPEATS)
-        .map(|_| {
-            let start = Instant::now();
-            render_again(scene, &camera, options, &prepared, &mut film, |_| ()).expect("it is drawn");
-            start.elapsed().as_secs_f64() * 1e3
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[REPEATS / 2]
+    let mut draw =
+        || _ = render_again(scene, &camera, options, &prepared, &mut film, |_| ()).expect("it is drawn");
+    1e3 * median_seconds(REPEATS, [&mut draw])[0]
 }
 
 fn main() {

@@ -4,8 +4,10 @@
 //! `cargo bench --bench shading`; ratios of one run are the result, not the rates. `-- NAME` is for that mesh alone, and
 //! nothing else, as for a profile.
 
+#[path = "common/turns.rs"]
+mod turns;
+
 use glam::DVec3;
-use std::time::Instant;
 use terrell::apparent::{ApparentMesh, Field, Subdivision};
 use terrell::color::Coloring;
 use terrell::film::Film;
@@ -17,6 +19,7 @@ use terrell::relativity::{ApparentMap, Motion, Points, PointsMut};
 use terrell::scene::{Body, Camera, Lens, Light, LightKind, Material, Mesh, Projection, Scene, View, shapes};
 use terrell::spectrum::Spectrum;
 use terrell::trace::{Look, Paths, Tracer};
+use turns::median_seconds;
 
 const REPEATS: usize = 15;
 
@@ -51,20 +54,9 @@ fn sphere(latitudes: u32) -> Mesh {
     }
 }
 
-/// Milliseconds of each, in turns, so that what else the machine does falls on all of them alike.
-fn medians_ms<const N: usize>(mut runs: [&mut dyn FnMut(); N]) -> [f64; N] {
-    let mut times = [(); N].map(|()| Vec::with_capacity(REPEATS));
-    for _ in 0..REPEATS {
-        for (run, times) in runs.iter_mut().zip(&mut times) {
-            let start = Instant::now();
-            run();
-            times.push(start.elapsed().as_secs_f64() * 1e3);
-        }
-    }
-    times.map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        times[REPEATS / 2]
-    })
+/// Milliseconds of each, in turns.
+fn medians_ms<const N: usize>(runs: [&mut dyn FnMut(); N]) -> [f64; N] {
+    median_seconds(REPEATS, runs).map(|seconds| 1e3 * seconds)
 }
 
 /// The vertices alone, halved until every thread has some.

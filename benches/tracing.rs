@@ -4,6 +4,9 @@
 //! `cargo bench --bench tracing`, or `-- NAME` for that mesh alone, as for a profile; with `-- --dump DIR` it writes the
 //! meshes and the rays for other programs instead (see benches/peers/embree.cpp).
 
+#[path = "common/turns.rs"]
+mod turns;
+
 use glam::{DVec2, DVec3};
 use std::path::Path;
 use std::time::Instant;
@@ -15,6 +18,7 @@ use terrell::relativity::{ApparentMap, Motion};
 use terrell::scene::{Body, Camera, Lens, Light, LightKind, Mesh, Projection, Scene, View, shapes};
 use terrell::spectrum::Spectrum;
 use terrell::trace::{Look, Paths, Tracer};
+use turns::median_seconds;
 
 const REPEATS: usize = 15;
 
@@ -37,22 +41,6 @@ fn sphere(n: usize) -> Mesh {
         }
     }
     Mesh::new(&vertices, triangles)
-}
-
-/// Seconds of each, in turns, so that what else the machine does falls on all of them alike.
-fn median_seconds<const N: usize>(mut runs: [&mut dyn FnMut(); N]) -> [f64; N] {
-    let mut times = [(); N].map(|()| Vec::with_capacity(REPEATS));
-    for _ in 0..REPEATS {
-        for (run, times) in runs.iter_mut().zip(&mut times) {
-            let start = Instant::now();
-            run();
-            times.push(start.elapsed().as_secs_f64());
-        }
-    }
-    times.map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        times[REPEATS / 2]
-    })
 }
 
 /// NAME.mesh: three corners a triangle. NAME.primary, NAME.shadow: origin, direction and length of every ray, tile by tile.
@@ -161,13 +149,16 @@ fn main() {
             let count = cast(&tracer, &lit);
             let mut film = Film::new(0, 0);
             let look = Look { samples: samples.offsets(), shading: &luminous, paths: Paths::default() };
-            let [seconds, base_seconds, both, base_both, picture] = median_seconds([
-                &mut || _ = cast(&tracer, &luminous),
-                &mut || _ = cast(&base, &luminous),
-                &mut || _ = cast(&tracer, &lit),
-                &mut || _ = cast(&base, &lit),
-                &mut || _ = tracer.trace(&scene, &camera, &look, &mut film, |_, _| ()),
-            ]);
+            let [seconds, base_seconds, both, base_both, picture] = median_seconds(
+                REPEATS,
+                [
+                    &mut || _ = cast(&tracer, &luminous),
+                    &mut || _ = cast(&base, &luminous),
+                    &mut || _ = cast(&tracer, &lit),
+                    &mut || _ = cast(&base, &lit),
+                    &mut || _ = tracer.trace(&scene, &camera, &look, &mut film, |_, _| ()),
+                ],
+            );
             let rates = |count: u64, seconds: [f64; 2]| seconds.map(|s| count as f64 / s * 1e-6);
             let primary = rates(count.primary, [seconds, base_seconds]);
             let shadow = rates(count.shadow, [both - seconds, base_both - base_seconds]);

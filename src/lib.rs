@@ -68,6 +68,7 @@ pub mod measure;
 pub mod outlook;
 pub mod picture;
 pub mod plan;
+mod processor;
 pub mod raster;
 pub mod relativity;
 pub mod render;

@@ -11,7 +11,7 @@ pub(super) fn ln(doppler: f64) -> f64 {
 /// Of many; with AVX2 if `vectors` and there is such.
 pub(crate) fn logarithms<const N: usize>(dopplers: &[f64; N], logarithms: &mut [f64; N], vectors: bool) {
     #[cfg(target_arch = "x86_64")]
-    if vectors && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+    if vectors && crate::processor::has_avx2() {
         // SAFETY: the processor has both.
         unsafe { logarithms_avx2(dopplers, logarithms) };
         return;

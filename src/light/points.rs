@@ -125,7 +125,7 @@ impl Ways {
 impl NearLight {
     fn ways(&self, points: &Points, ways: &mut Ways, vectors: bool) {
         #[cfg(target_arch = "x86_64")]
-        if vectors && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+        if vectors && crate::processor::has_avx2() {
             // SAFETY: the processor has both.
             unsafe { self.ways_avx2(points, ways) };
             return;

@@ -364,7 +364,7 @@ pub(super) fn run<R: Lane, const ROTATE: bool>(
 ) {
     let aligned = c.is_aligned();
     #[cfg(target_arch = "x86_64")]
-    if vectors && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+    if vectors && crate::processor::has_avx2() {
         // SAFETY: the processor has both features.
         return unsafe {
             if aligned {

@@ -139,7 +139,7 @@ impl Beam {
     ) {
         #[cfg(target_arch = "x86_64")]
         {
-            if vectors && x86::has_avx2() {
+            if vectors && crate::processor::has_avx2() {
                 // SAFETY: the processor has both.
                 unsafe { self.trace_avx2(way, rays, tree, leaves, origin) }
             } else {

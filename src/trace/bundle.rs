@@ -118,7 +118,7 @@ impl Bundle {
     fn blocked_by(&mut self, rays: &Rays<'_>, open: u64, vectors: bool) -> u64 {
         #[cfg(target_arch = "x86_64")]
         {
-            if vectors && x86::has_avx2() {
+            if vectors && crate::processor::has_avx2() {
                 // SAFETY: the processor has both.
                 unsafe { self.blocked_avx2(rays, open) }
             } else {

@@ -73,9 +73,9 @@ impl Default for Faces<'_> {
 }
 
 impl<'a> Faces<'a> {
-    /// Forgets them for another tile, or, where they are too `many` to be found again, for another sample.
-    pub fn forget(&mut self, many: bool) {
-        if !many || self.all.len() > 4 * SLOTS {
+    /// Forgets them before another sample, where they are too many to be found again.
+    pub fn limit(&mut self) {
+        if self.all.len() > 4 * SLOTS {
             self.all.clear();
         }
     }
@@ -118,7 +118,10 @@ mod tests {
         let mut most = 0;
         for step in 0..5000 {
             if step % 100 == 0 {
-                faces.forget(step % 300 != 0);
+                faces.limit();
+            }
+            if step % 300 == 0 {
+                faces.all.clear();
             }
             let index = usize::from(random() < 0.5);
             let leaf = (random() * tree.count() as f64) as u32;

@@ -41,11 +41,6 @@ pub(super) mod x86 {
     use super::Lanes;
     use std::arch::x86_64::*;
 
-    /// Whether the processor has AVX2 and FMA.
-    pub fn has_avx2() -> bool {
-        is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
-    }
-
     /// Eight, with AVX2 and FMA.
     #[derive(Clone, Copy)]
     pub struct Avx2(__m256);

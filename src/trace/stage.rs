@@ -1,7 +1,5 @@
 use super::beam::RAYS;
 use super::directed::Directed;
-#[cfg(target_arch = "x86_64")]
-use super::lanes::x86;
 use super::origin::Origin;
 use super::ray::Ray;
 use super::tree::Tree;
@@ -102,7 +100,7 @@ impl Target {
     /// AVX2 if `vectors` and there is such.
     pub fn boost(&self, lines: &[[f64; RAYS]; 4], rest: &mut Directed, vectors: bool) {
         #[cfg(target_arch = "x86_64")]
-        if vectors && x86::has_avx2() {
+        if vectors && crate::processor::has_avx2() {
             // SAFETY: the processor has both.
             unsafe { self.boost_avx2(lines, rest) };
             return;

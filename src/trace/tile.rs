@@ -167,9 +167,9 @@ impl Tile {
                 self.count.primary += pass.len() as u64 * u64::from(size[0] * size[1]);
                 continue;
             }
-            faces.forget(false);
+            faces.all.clear();
             for number in pass.clone() {
-                faces.forget(true);
+                faces.limit();
                 self.sights.aim(job.lens, [left, top], size, job.samples[number]);
                 self.count.primary += self.sights.count as u64;
                 self.find(job, &mut faces);
