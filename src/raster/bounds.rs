@@ -1,6 +1,6 @@
 use crate::relativity::ApparentMap;
 use crate::scene::{Lens, Projection};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec4};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Pixels, the ends excluded.
@@ -72,7 +72,7 @@ impl<'a> Bounder<'a> {
     /// The pixels whose samples may see something within a hull, in the camera's axes.
     #[inline]
     pub fn of_hull(&self, hull: &Hull) -> [Option<Rect>; 2] {
-        if let Some(rect) = self.of_small(hull) {
+        if let Some(rect) = self.of_small(hull.corners.map(|c| self.place(c)), hull.beside, false) {
             return [rect, None];
         }
         let points = &hull.points();
@@ -94,26 +94,48 @@ impl<'a> Bounder<'a> {
         }
     }
 
-    /// The same of one that is small on a pinhole's picture, and moved by little there; none for others.
+    /// Where something seen is on a pinhole's picture.
     #[inline]
-    fn of_small(&self, Hull { corners: [a, b, c], beside, .. }: &Hull) -> Option<Option<Rect>> {
-        let nearest = a.z.min(b.z).min(c.z);
+    pub fn place(&self, seen: DVec3) -> Place {
+        let inverse = 1.0 / seen.z;
+        let [x, y] = [seen.x, -seen.y].map(|c| c * (self.lens.focal().x * inverse));
         // Also false for NaN.
-        let before = a.z > 0.0 && b.z > 0.0 && c.z > 0.0;
-        if self.lens.projection() != Projection::Pinhole || !(before && *beside < 1e-3 * nearest) {
+        let is_near = x.abs().max(y.abs()) < MOST && inverse > 0.0 && inverse < 1e30;
+        if self.lens.projection() == Projection::Pinhole && is_near {
+            Place(Vec4::new(x as f32, y as f32, 0.0, inverse as f32))
+        } else {
+            Place::NOWHERE
+        }
+    }
+
+    /// The pixels whose samples may see a triangle on a pinhole's picture, by where its corners are and how far beside the
+    /// flat one it is seen at most: as [`of_hull`](Self::of_hull), where that is far less than a pixel; none where it is more,
+    /// or too far out to be told. There are no pixels for one that is surely seen from the back it does not have.
+    #[inline]
+    pub fn of_small(&self, [a, b, c]: [Place; 3], beside: f64, one_sided: bool) -> Option<Option<Rect>> {
+        let (low, high) = (a.0.min(b.0).min(c.0), a.0.max(b.0).max(c.0));
+        // What is moved by δ at z is seen elsewhere by (δ/z)(f + |place|), to first order, and by a thousandth of it more.
+        let moved = beside as f32 * high.w;
+        let farthest = high.x.max(high.y).max(-low.x).max(-low.y);
+        let off = 1.01 * moved * (self.lens.focal().x as f32 + farthest);
+        // Also false for NaN.
+        if !(moved < 1e-3 && off < 1.0) {
             return None;
         }
-        let focal = self.lens.focal().x;
-        let place = |p: &DVec3| DVec2::new(p.x, -p.y) * (focal / p.z);
-        let (a, b, c) = (place(a), place(b), place(c));
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        // What is moved by δ at z is seen elsewhere by (δ/z)(f + |place|), to first order, and by a thousandth of it more.
-        let off = 1.01 * (beside / nearest) * (focal + low.abs().max(high.abs()).max_element());
-        let middle = self.lens.middle();
-        let (low, high) = (middle + low - off, middle + high + off);
-        // Farther out, rounding is too large on the picture.
-        (off < 1.0 && low.abs().max(high.abs()).max_element() < 1e6)
-            .then(|| self.rect([low.x, high.x], [low.y, high.y]))
+        if one_sided {
+            let (ab, ac) = (b.0 - a.0, c.0 - a.0);
+            // Twice its area, positive if its back is seen: sides that are not straight take as much off that as they are
+            // long times how far they are off, which single precision adds to.
+            let area = ab.x * ac.y - ab.y * ac.x;
+            let size = high - low;
+            if area > 4.0 * (off + SLACK_PX as f32) * (size.x + size.y) {
+                return Some(None);
+            }
+        }
+        let (middle, off) = (self.lens.middle(), f64::from(off));
+        let [x, y] = [[low.x, high.x], [low.y, high.y]].map(|range| range.map(f64::from));
+        let around = |[low, high]: [f64; 2], middle: f64| [low - off + middle, high + off + middle];
+        Some(self.rect(around(x, middle.x), around(y, middle.y)))
     }
 
     fn everything(&self) -> Option<Rect> {
@@ -190,6 +212,18 @@ impl<'a> Bounder<'a> {
     }
 }
 
+/// Where something is seen on a pinhole's picture: pixels from the middle to the right and down, and 1/z; single precision.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place(Vec4);
+
+/// So many pixels from the middle, single precision is good to a twentieth of [`SLACK_PX`].
+const MOST: f64 = 1e4;
+
+impl Place {
+    /// What is not before the camera, or far out of the picture.
+    pub const NOWHERE: Self = Self(Vec4::new(0.0, 0.0, 0.0, f32::INFINITY));
+}
+
 /// Where a triangle is seen, observer's axes: in the convex hull of its corners and of those moved along.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hull {
@@ -200,6 +234,11 @@ pub(crate) struct Hull {
 }
 
 impl Hull {
+    /// Of a triangle whose corners are seen there; `axis` is the map's in the observer's axes, and `beside` what [`beside`] says.
+    pub fn new(corners: [DVec3; 3], axis: DVec3, beside: f64) -> Self {
+        Self { corners, along: axis * beside, beside }
+    }
+
     /// All the points.
     pub fn points(&self) -> [DVec3; 6] {
         let ([a, b, c], along) = (self.corners, self.along);
@@ -207,20 +246,14 @@ impl Hull {
     }
 }
 
-/// What a triangle is seen within; none for one that is not seen at all. Its corners are at `offsets` from the observer in the
-/// rest frame, and seen at what `seen` says; `axis` is the map's in the observer's axes.
+/// How far beside the flat one between the apparent places of its corners a triangle is seen at most; none for one that is
+/// not seen at all. Its corners are at `offsets` from the observer in the rest frame.
 ///
-/// That needs no cutting. Between its corners, a triangle is seen beside the flat one between their apparent places: along
-/// the motion, by γβ(linear r′ − r′), which is at most γβ L²/6r for a longest side L that is no nearer than r, since r′ is
-/// convex and bends by 1/r at most. So it is seen within what the flat one sweeps when moved that far.
+/// That needs no cutting. Between its corners it is seen beside the flat one along the motion, by γβ(linear r′ − r′), which is
+/// at most γβ L²/6r for a longest side L that is no nearer than r, since r′ is convex and bends by 1/r at most. So it is seen
+/// within what the flat one sweeps when moved that far.
 #[inline]
-pub(crate) fn hull(
-    map: &ApparentMap,
-    axis: DVec3,
-    offsets: [DVec3; 3],
-    seen: impl FnOnce() -> [DVec3; 3],
-    one_sided: bool,
-) -> Option<Hull> {
+pub(crate) fn beside(map: &ApparentMap, offsets: [DVec3; 3], one_sided: bool) -> Option<f64> {
     let [a, b, c] = offsets;
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);
@@ -229,14 +262,20 @@ pub(crate) fn hull(
         return None;
     }
     let nearest = a.length_squared().min(b.length_squared()).min(c.length_squared()).sqrt();
-    let side = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared()).sqrt();
+    let side_squared = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared());
+    let side = side_squared.sqrt();
     let mut nearest = nearest - side;
     if nearest < side {
         // The plane's distance says more.
         nearest = nearest.max((height / normal.length()).abs());
     }
-    let beside = map.speed() * (side * side) / (6.0 * nearest) * (1.0 + 1e-9);
-    Some(Hull { corners: seen(), along: axis * beside, beside })
+    Some(most_beside(map, side_squared, nearest))
+}
+
+/// The same for triangles of no longer sides than that, squared, of which no point is nearer.
+#[inline]
+pub(crate) fn most_beside(map: &ApparentMap, side_squared: f64, nearest: f64) -> f64 {
+    map.speed() * side_squared / (6.0 * nearest) * (1.0 + 1e-9)
 }
 
 /// The cone of directions that holds points' convex hull: unit axis and half-angle, a little wide. None where it is not

@@ -23,7 +23,7 @@ use crate::light::SeenShading;
 use crate::relativity::ApparentMap;
 use crate::scene::{Lens, Mesh};
 use band::Band;
-pub(crate) use bounds::{Bounder, Hull, Rect, SLACK_PX, hull};
+pub(crate) use bounds::{Bounder, Hull, Place, Rect, SLACK_PX, beside, most_beside};
 pub use painter::{MOST_PAINTED, TooManyToPaint, paint};
 use rayon::prelude::*;
 

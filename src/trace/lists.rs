@@ -1,14 +1,16 @@
+use super::cluster::Cluster;
+use super::origin::Origin;
 use super::stage::Target;
 use super::tile::SIDE;
-use crate::raster::{Bounder, Hull, Rect, SLACK_PX, hull};
+use crate::raster::{Bounder, Hull, Place, Rect, SLACK_PX, beside, most_beside};
 use crate::relativity::{Points, PointsMut};
-use crate::scene::Lens;
+use crate::scene::{Lens, Projection};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 /// Which triangles of one body each tile looks at: those that may be seen in it.
 ///
-/// Where they may be seen needs no cutting: bounds of six points (see [`hull`]), or of three and how far the others may be from
+/// Where they may be seen needs no cutting: bounds of six points (see [`beside`]), or of three and how far the others may be from
 /// them, are all that is needed.
 pub(super) struct Lists {
     /// Tiles of a row.
@@ -32,14 +34,31 @@ struct Large {
 /// A triangle in more tiles is kept once, not in every one: memory is bounded by the mesh.
 const MANY: u32 = 16;
 
-/// Triangles sorted as one task.
-const TASK: usize = 1 << 13;
+/// Clusters sorted as one task.
+const TASK: usize = 1 << 7;
 
 /// What a task has found: tiles and numbers.
 #[derive(Default)]
 struct Found {
+    /// Tiles of a row.
+    columns: u32,
     small: Vec<(u32, u32)>,
     large: Vec<Large>,
+}
+
+impl Found {
+    /// A triangle that may be seen there, within that.
+    #[inline]
+    fn add(&mut self, number: u32, Rect { x, y }: Rect, hull: impl FnOnce() -> Option<[DVec2; 6]>) {
+        let [x, y] = [x, y].map(|[from, to]| [from / SIDE, to.div_ceil(SIDE)]);
+        if (x[1] - x[0]) * (y[1] - y[0]) > MANY {
+            self.large.push(Large { number, tiles: Rect { x, y }, hull: hull() });
+            return;
+        }
+        for row in y[0]..y[1] {
+            self.small.extend((x[0]..x[1]).map(|column| (row * self.columns + column, number)));
+        }
+    }
 }
 
 impl Lists {
@@ -47,25 +66,13 @@ impl Lists {
         let columns = lens.width().div_ceil(SIDE);
         let tiles = columns * lens.height().div_ceil(SIDE);
         let bounds = Bounds::new(target, lens, samples);
-        let count = target.tree.count();
-        let found: Vec<Found> = (0..count.div_ceil(TASK))
-            .into_par_iter()
-            .map(|task| {
-                let mut found = Found::default();
-                for number in (task * TASK..count.min((task + 1) * TASK)).map(|n| n as u32) {
-                    let Some(seen) = bounds.hull(number) else { continue };
-                    for Rect { x, y } in bounds.bounder.of_hull(&seen).into_iter().flatten() {
-                        let [x, y] = [x, y].map(|[from, to]| [from / SIDE, to.div_ceil(SIDE)]);
-                        if (x[1] - x[0]) * (y[1] - y[0]) > MANY {
-                            let hull = bounds.bounder.projected(&seen.points());
-                            found.large.push(Large { number, tiles: Rect { x, y }, hull });
-                            continue;
-                        }
-                        for row in y[0]..y[1] {
-                            found.small.extend((x[0]..x[1]).map(|column| (row * columns + column, number)));
-                        }
-                    }
-                }
+        let found: Vec<Found> = target
+            .tree
+            .clusters()
+            .par_chunks(TASK)
+            .map(|clusters| {
+                let mut found = Found { columns, ..Found::default() };
+                clusters.iter().for_each(|cluster| bounds.add_cluster(cluster, &mut found));
                 found
             })
             .collect();
@@ -132,27 +139,47 @@ fn within(points: &[DVec2; 6], [low, high]: [f64; 2]) -> Option<[f64; 2]> {
     (range[0] <= range[1]).then_some(range)
 }
 
-/// Where vertices of a target are seen, observer's axes.
-fn seen(target: &Target) -> [Vec<f64>; 3] {
+/// Where the vertices of a target are seen.
+enum Seen {
+    /// On a pinhole's picture.
+    Places(Vec<Place>),
+    /// Observer's axes.
+    Points(Vec<DVec3>),
+}
+
+impl Seen {
+    fn new(target: &Target, bounder: &Bounder<'_>, projection: Projection) -> Self {
+        match projection {
+            Projection::Pinhole => {
+                Self::Places(each_seen(target, Place::NOWHERE, |seen| bounder.place(seen)))
+            }
+            _ => Self::Points(each_seen(target, DVec3::ZERO, |seen| seen)),
+        }
+    }
+}
+
+/// Something of where each vertex is seen, which is `none` before.
+fn each_seen<T: Copy + Send>(target: &Target, none: T, of: impl Fn(DVec3) -> T + Sync) -> Vec<T> {
     let mesh = &target.mesh;
-    let count = mesh.vertex_count();
-    let [mut x, mut y, mut z, mut distance, mut doppler] = [(); 5].map(|()| vec![0.0; count]);
     // So many at a time.
-    const PART: usize = 1 << 12;
+    const PART: usize = 1 << 10;
+    let mut all = vec![none; mesh.vertex_count()];
     let rest = mesh.x.par_chunks(PART).zip(mesh.y.par_chunks(PART)).zip(mesh.z.par_chunks(PART));
-    let places = x.par_chunks_mut(PART).zip(y.par_chunks_mut(PART)).zip(z.par_chunks_mut(PART));
-    let others = distance.par_chunks_mut(PART).zip(doppler.par_chunks_mut(PART));
-    rest.zip(places).zip(others).for_each(|((((rx, ry), rz), ((x, y), z)), (distance, doppler))| {
-        let from = Points { x: rx, y: ry, z: rz };
-        target.map.see_all(from, PointsMut { x, y, z, distance, doppler });
+    all.par_chunks_mut(PART).zip(rest).for_each(|(all, ((rx, ry), rz))| {
+        let mut parts = [[0.0; PART]; 5];
+        let [x, y, z, distance, doppler] = parts.each_mut().map(|part| &mut part[..rx.len()]);
+        target.map.see_all(Points { x: rx, y: ry, z: rz }, PointsMut { x, y, z, distance, doppler });
+        for (i, at) in all.iter_mut().enumerate() {
+            *at = of(DVec3::new(x[i], y[i], z[i]));
+        }
     });
-    [x, y, z]
+    all
 }
 
 /// Finds where triangles may be seen.
 struct Bounds<'a> {
     bounder: Bounder<'a>,
-    seen: [Vec<f64>; 3],
+    seen: Seen,
     /// Of the motion, observer's axes, towards where triangles are seen beside flat ones.
     axis: DVec3,
     target: &'a Target,
@@ -160,25 +187,72 @@ struct Bounds<'a> {
 
 impl<'a> Bounds<'a> {
     fn new(target: &'a Target, lens: &'a Lens, samples: [[f64; 2]; 2]) -> Self {
-        let (bounder, seen) = (Bounder::new(lens, samples), seen(target));
+        let bounder = Bounder::new(lens, samples);
+        let seen = Seen::new(target, &bounder, lens.projection());
         Self { bounder, seen, axis: target.map.axis_observer(), target }
     }
 
-    /// What a triangle is seen within, observer's axes; none for one that is not seen at all.
-    #[inline]
-    fn hull(&self, number: u32) -> Option<Hull> {
-        let Target { mesh, map, tree, .. } = self.target;
-        let leaf = tree.leaf(number);
-        let [a, b, c] = leaf.corners;
-        let offsets = [map.offset_rest(a), map.offset_rest(b), map.offset_rest(c)];
-        let [x, y, z] = &self.seen;
-        let place = |v: u32| DVec3::new(x[v as usize], y[v as usize], z[v as usize]);
-        // Looked up only of what is not hidden.
-        let seen = || {
-            let [a, b, c] = mesh.triangles[leaf.face as usize];
-            [place(a), place(b), place(c)]
+    /// Adds those of a cluster that may be seen.
+    fn add_cluster(&self, cluster: &Cluster, found: &mut Found) {
+        let nearest = cluster.nearest(&Origin::of_observer(&self.target.map));
+        let (Seen::Places(places), Some(nearest)) = (&self.seen, nearest) else {
+            cluster.leaves.clone().for_each(|number| self.add(number, found));
+            return;
         };
-        hull(map, self.axis, offsets, seen, leaf.one_sided)
+        let beside = most_beside(&self.target.map, cluster.side_squared, nearest);
+        for number in cluster.leaves.clone() {
+            let places = self.corners(number).map(|v| places[v as usize]);
+            match self.bounder.of_small(places, beside, cluster.one_sided) {
+                Some(None) => (),
+                Some(Some(rect)) => found.add(number, rect, || self.projected(number)),
+                None => self.add(number, found),
+            }
+        }
+    }
+
+    /// Adds a triangle, if it may be seen.
+    fn add(&self, number: u32, found: &mut Found) {
+        let Some(beside) = self.beside(number) else { return };
+        if let Seen::Places(places) = &self.seen {
+            let places = self.corners(number).map(|v| places[v as usize]);
+            if let Some(rect) = self.bounder.of_small(places, beside, false) {
+                if let Some(rect) = rect {
+                    found.add(number, rect, || self.projected(number));
+                }
+                return;
+            }
+        }
+        let hull = self.hull(number, beside);
+        for rect in self.bounder.of_hull(&hull).into_iter().flatten() {
+            found.add(number, rect, || self.bounder.projected(&hull.points()));
+        }
+    }
+
+    /// Numbers of a triangle's corners in the mesh.
+    #[inline]
+    fn corners(&self, number: u32) -> [u32; 3] {
+        self.target.mesh.triangles[self.target.tree.face(number)]
+    }
+
+    /// How far beside the flat one a triangle is seen at most; none if it is not seen at all.
+    fn beside(&self, number: u32) -> Option<f64> {
+        let Target { map, tree, .. } = self.target;
+        let leaf = tree.leaf(number);
+        beside(map, leaf.corners.map(|c| map.offset_rest(c)), leaf.one_sided)
+    }
+
+    /// What a triangle is seen within, observer's axes.
+    fn hull(&self, number: u32, beside: f64) -> Hull {
+        let place = |v: u32| match &self.seen {
+            Seen::Places(_) => self.target.map.see(self.target.mesh.vertex(v)).position,
+            Seen::Points(points) => points[v as usize],
+        };
+        Hull::new(self.corners(number).map(place), self.axis, beside)
+    }
+
+    /// That on a pinhole's picture.
+    fn projected(&self, number: u32) -> Option<[DVec2; 6]> {
+        self.bounder.projected(&self.hull(number, self.beside(number)?).points())
     }
 }
 
@@ -186,7 +260,7 @@ impl<'a> Bounds<'a> {
 mod tests {
     use super::*;
     use crate::relativity::{ApparentMap, Motion};
-    use crate::scene::{Mesh, Projection};
+    use crate::scene::{Material, Mesh, Projection};
     use crate::trace::beam::tests::random;
     use crate::trace::tree::Tree;
     use crate::trace::{Stage, beam};
@@ -207,7 +281,7 @@ mod tests {
         )
         .unwrap();
         let (mut listed, mut large) = (0, 0);
-        for round in 0..300 {
+        for round in 0..6000 {
             let speed = [0.0, 0.5, 3.0, 100.0, 1e6][round % 5];
             let projection = [Projection::Pinhole, Projection::Fisheye, Projection::Panorama][round % 3];
             let fov = [120.0, 360.0, 360.0][round % 3];
@@ -218,15 +292,19 @@ mod tests {
             let motion = Motion { celerity, origin: Event::new(0.0, 0.1, 0.2, -0.3) };
             let map = ApparentMap::new(&motion, &observer);
             let middle = map.observer_rest() + point([1.0, 8.0][round % 2]);
-            let side = [0.02, 1.0, 20.0][round % 3];
+            let side = [0.02, 0.2, 1.0, 20.0][round / 3 % 4];
             let corners = [middle + point(side), middle + point(side), middle + point(side)];
-            let mesh = Arc::new(Mesh::new(&corners, vec![[0, 1, 2]]));
-            let tree = Arc::new(Tree::flat(&mesh));
+            let mut mesh = Mesh::new(&corners, vec![[0, 1, 2]]);
+            mesh.materials = vec![Material { one_sided: round % 4 < 2, ..Material::default() }];
+            let mesh = Arc::new(mesh);
+            let tree = Arc::new(Tree::flat(&mesh).listed());
             let stage = Stage::new(vec![(0, motion, mesh, tree)], &camera, false);
             let target = &stage.targets[0];
             let bounds = Bounds::new(target, &lens, [[0.5; 2]; 2]);
             let lists = Lists::new(target, &lens, [[0.5; 2]; 2]);
-            let hull = bounds.hull(0).unwrap().points();
+            // One that turns its back is not seen.
+            let Some(beside) = bounds.beside(0) else { continue };
+            let hull = bounds.hull(0, beside).points();
             let most = hull[3] - hull[0];
             for step in 0..200 {
                 let (u, v) = (f64::from(step % 14) / 14.0, f64::from(step / 14) / 15.0);
@@ -262,7 +340,7 @@ mod tests {
                 large += usize::from(wide);
             }
         }
-        assert!(listed > 3000 && large > 1000 && listed - large > 500, "{listed} {large}");
+        assert!(listed > 60_000 && large > 20_000 && listed - large > 10_000, "{listed} {large}");
     }
 
     #[test]

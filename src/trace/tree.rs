@@ -1,3 +1,4 @@
+use super::cluster::Cluster;
 use crate::scene::Mesh;
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
@@ -20,6 +21,8 @@ pub(super) struct Tree {
     vertices: Vec<DVec3>,
     /// Where there are no boxes: leaves are the mesh's triangles in its order, and are made as they are asked for.
     mesh: Option<Arc<Mesh>>,
+    /// Of the leaves, where these are listed.
+    clusters: Vec<Cluster>,
     /// The mesh's middle.
     pub centre: DVec3,
     /// 1 over its greatest side.
@@ -144,6 +147,18 @@ impl Tree {
         Self { mesh: Some(mesh.clone()), ..Self::empty(mesh) }
     }
 
+    /// The same to be listed.
+    #[must_use]
+    pub fn listed(mut self) -> Self {
+        self.clusters = Cluster::of(&self);
+        self
+    }
+
+    /// What is known of some leaves at a time, where these are [`listed`](Self::listed).
+    pub fn clusters(&self) -> &[Cluster] {
+        &self.clusters
+    }
+
     /// How many leaves there are.
     pub fn count(&self) -> usize {
         self.mesh.as_ref().map_or(self.leaves.len(), |mesh| mesh.triangles.len())
@@ -170,6 +185,15 @@ impl Tree {
         }
     }
 
+    /// The number of a leaf's triangle in the mesh.
+    #[inline]
+    pub fn face(&self, number: u32) -> usize {
+        match &self.mesh {
+            None => (self.leaves[number as usize].face & !ONE_SIDED) as usize,
+            Some(_) => number as usize,
+        }
+    }
+
     /// All of them.
     pub fn leaves(&self) -> impl Iterator<Item = Leaf> {
         (0..self.count() as u32).map(|number| self.leaf(number))
@@ -184,8 +208,8 @@ impl Tree {
         let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
         let vertices = (0..mesh.vertex_count() as u32).into_par_iter().with_min_len(1 << 12);
         let radius = vertices.map(|v| mesh.vertex(v).distance(centre)).reduce(|| 0.0, f64::max);
-        let (branches, leaves, vertices) = Default::default();
-        Self { branches, leaves, vertices, mesh: None, centre, scale, radius }
+        let (branches, leaves, vertices, clusters) = Default::default();
+        Self { branches, leaves, vertices, mesh: None, clusters, centre, scale, radius }
     }
 
     /// All of it, if there is anything.

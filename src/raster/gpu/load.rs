@@ -5,7 +5,7 @@ use crate::apparent::see_vertices;
 use crate::film::Samples;
 use crate::light::{Facet, SeenShading, owns_boundary};
 use crate::raster::triangle::{Planes, Surface};
-use crate::raster::{Bounder, Drawable, Rect, hull};
+use crate::raster::{Bounder, Drawable, Hull, Rect, beside};
 use crate::relativity::ApparentMap;
 use crate::scene::{Lens, Mesh, Projection};
 use glam::DVec3;
@@ -90,9 +90,10 @@ impl Load {
                 let mut part = Part::default();
                 for number in task * TASK..subject.mesh.triangles.len().min((task + 1) * TASK) {
                     let offsets = subject.mesh.corners(number).map(|c| subject.map.offset_rest(c));
-                    let places = || subject.mesh.triangles[number].map(|v| seen[v as usize]);
                     let one_sided = subject.mesh.is_one_sided(number);
-                    let Some(hull) = hull(subject.map, axis, offsets, places, one_sided) else { continue };
+                    let Some(beside) = beside(subject.map, offsets, one_sided) else { continue };
+                    let corners = subject.mesh.triangles[number].map(|v| seen[v as usize]);
+                    let hull = Hull::new(corners, axis, beside);
                     let points = hull.points();
                     let index = part.shapes.len() as u32;
                     let before = part.figures.len();
