@@ -5,6 +5,7 @@
 //! of the surface does not matter here.
 
 mod ambient;
+mod arrivals;
 mod facet;
 pub(crate) mod gloss;
 mod incidence;
@@ -16,6 +17,7 @@ mod shading;
 mod tables;
 mod trail;
 
+pub(crate) use arrivals::{Arrivals, Diffuse};
 pub use facet::Facet;
 pub(crate) use facet::{clamped, owns_boundary};
 pub(crate) use logarithm::logarithms;

@@ -12,14 +12,14 @@ pub(crate) type Vectors = [[f64; POINTS]; 4];
 /// Points of one body's surface that are seen, all in its rest frame.
 #[repr(align(64))]
 pub(crate) struct Points {
-    /// How many there are.
-    pub count: usize,
+    /// Which there are: a bit for each. What the others are does not matter.
+    pub mask: u64,
     /// Numbers of the triangles they lie on.
     pub faces: [u32; POINTS],
     /// From the observer's event to theirs.
     pub events: Vectors,
     /// On the side that is seen, of any length.
-    normals: [[f64; POINTS]; 3],
+    pub normals: [[f64; POINTS]; 3],
 }
 
 /// Ways from [`Points`] back to one light.
@@ -31,33 +31,40 @@ pub(crate) struct Ways {
     pub open: u64,
     /// Where they end, in units of the vector.
     pub far: f64,
+    /// ν at the surface over ν of the light.
+    pub dopplers: [f64; POINTS],
+    /// Irradiance, were there no shift, of a surface that faces the light; 0 where nothing comes from it.
+    pub irradiances: [f64; POINTS],
 }
 
 impl Default for Points {
     fn default() -> Self {
         let (faces, normals) = ([0; POINTS], [[0.0; POINTS]; 3]);
-        Self { count: 0, faces, events: [[0.0; POINTS]; 4], normals }
+        Self { mask: 0, faces, events: [[0.0; POINTS]; 4], normals }
     }
 }
 
 impl Default for Ways {
     fn default() -> Self {
-        Self { backs: [[0.0; POINTS]; 4], open: 0, far: f64::INFINITY }
+        let none = [0.0; POINTS];
+        Self { backs: [none; 4], open: 0, far: f64::INFINITY, dopplers: [1.0; POINTS], irradiances: none }
     }
 }
 
 impl Points {
-    /// One more, which is seen directly, with the normal there: of any length, on the side that is seen.
+    /// One more, at the event that is known of it, with the normal there: of any length, on the side that is seen.
     #[inline]
-    pub fn push(&mut self, face: usize, at: DVec3, normal: DVec3) {
-        let i = self.count;
-        self.count += 1;
+    pub fn add(&mut self, i: usize, face: usize, normal: DVec3) {
+        self.mask |= 1 << i;
         self.faces[i] = face as u32;
-        self.events[0][i] = -at.length();
         for k in 0..3 {
-            self.events[k + 1][i] = at[k];
             self.normals[k][i] = normal[k];
         }
+    }
+
+    /// The normal of one of them, of any length.
+    pub fn normal(&self, i: usize) -> DVec3 {
+        DVec3::from_array(self.normals.each_ref().map(|c| c[i]))
     }
 
     /// From the observer's event to that of one of them.
@@ -87,8 +94,10 @@ impl SeenShading<'_> {
     pub(crate) fn ways(&self, body: usize, light: usize, points: &Points, ways: &mut Ways, vectors: bool) {
         ways.open = 0;
         match self.incidence(body, light) {
-            Incidence::Distant { to_light, .. } => {
+            Incidence::Distant { to_light, doppler } => {
                 ways.far = f64::INFINITY;
+                ways.dopplers.fill(*doppler);
+                ways.irradiances.fill(self.strength(light));
                 let back = FourVector::<Rest>::seen_from(*to_light);
                 let components = [back.t, to_light.x, to_light.y, to_light.z];
                 for (to, component) in ways.backs.iter_mut().zip(components) {
@@ -98,9 +107,10 @@ impl SeenShading<'_> {
             }
             Incidence::Near => {
                 ways.far = 1.0;
-                let Some(near) = self.near(body, light) else { return };
-                if self.strength(light) > 0.0 {
-                    near.ways(points, ways, vectors);
+                let strength = self.strength(light);
+                match self.near(body, light) {
+                    Some(near) if strength > 0.0 => near.ways(strength, points, ways, vectors),
+                    _ => ways.irradiances.fill(0.0),
                 }
             }
             Incidence::Ambient { .. } => {}
@@ -117,32 +127,31 @@ impl Ways {
         for (i, facing) in facing.iter_mut().enumerate() {
             *facing = possible[i] & (a[i] * x[i] + b[i] * y[i] + c[i] * z[i] > 0.0);
         }
-        let open = facing[..points.count].iter().rev().fold(0, |bits, is| bits << 1 | u64::from(*is));
-        self.open = open;
+        self.open = points.mask & facing.iter().rev().fold(0, |bits, is| bits << 1 | u64::from(*is));
     }
 }
 
 impl NearLight {
-    fn ways(&self, points: &Points, ways: &mut Ways, vectors: bool) {
+    fn ways(&self, strength: f64, points: &Points, ways: &mut Ways, vectors: bool) {
         #[cfg(target_arch = "x86_64")]
         if vectors && crate::processor::has_avx2() {
             // SAFETY: the processor has both.
-            unsafe { self.ways_avx2(points, ways) };
+            unsafe { self.ways_avx2(strength, points, ways) };
             return;
         }
         let _ = vectors;
-        self.ways_with(points, ways);
+        self.ways_with(strength, points, ways);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn ways_avx2(&self, points: &Points, ways: &mut Ways) {
-        self.ways_with(points, ways);
+    fn ways_avx2(&self, strength: f64, points: &Points, ways: &mut Ways) {
+        self.ways_with(strength, points, ways);
     }
 
     /// As [`at`](Self::at), all together.
     #[inline(always)]
-    fn ways_with(&self, points: &Points, ways: &mut Ways) {
+    fn ways_with(&self, strength: f64, points: &Points, ways: &mut Ways) {
         // Loops of plain arithmetic, which compilers make vectors of.
         let rows = self.lamp_from_rest().rows();
         // From the lamp, in its frame, and how far.
@@ -164,11 +173,16 @@ impl NearLight {
         for (i, possible) in possible.iter_mut().enumerate() {
             let doppler = -ways.backs[0][i] / way[0][i];
             *possible = (doppler > 0.0) & (doppler < f64::INFINITY);
+            ways.dopplers[i] = doppler;
+            ways.irradiances[i] = if *possible { strength / (way[0][i] * way[0][i]) } else { 0.0 };
         }
-        if let Some((axis, [_, dark])) = self.cone() {
+        if let Some((axis, [bright, dark])) = self.cone() {
+            let inverse = 1.0 / (bright - dark).max(1e-6);
             for (i, possible) in possible.iter_mut().enumerate() {
                 let along = axis.x * way[1][i] + axis.y * way[2][i] + axis.z * way[3][i];
                 *possible &= along > dark * way[0][i];
+                let edge = ((along / way[0][i] - dark) * inverse).clamp(0.0, 1.0);
+                ways.irradiances[i] *= edge * edge;
             }
         }
         ways.keep_facing(points, &possible);
@@ -218,7 +232,7 @@ mod tests {
         let (mut points, mut ways) = (Points::default(), Ways::default());
         let mut all = [0u32; 5];
         for first in (0..mesh.triangles.len()).step_by(POINTS) {
-            points.count = 0;
+            points.mask = 0;
             let facets: Vec<(Facet<'_>, DVec3)> = (first..(first + POINTS).min(mesh.triangles.len()))
                 .map(|face| {
                     let corners = mesh.corners(face).map(|c| c + DVec3::new(0.3, 5.0, 0.1));
@@ -226,7 +240,12 @@ mod tests {
                     (Facet::new(mesh, face, corners), at)
                 })
                 .collect();
-            facets.iter().for_each(|(facet, at)| points.push(facet.face(), *at, facet.normal_seen(*at)));
+            for (i, (facet, at)) in facets.iter().enumerate() {
+                points.add(i, facet.face(), facet.normal_seen(*at));
+                let event = facet.point(*at).event();
+                points.events[0][i] = event.t;
+                (0..3).for_each(|k| points.events[k + 1][i] = event.xyz()[k]);
+            }
             for (light, vectors) in (0..5).flat_map(|l| [(l, false), (l, true)]) {
                 seen.ways(0, light, &points, &mut ways, vectors);
                 for (i, (facet, at)) in facets.iter().enumerate() {

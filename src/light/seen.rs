@@ -179,6 +179,16 @@ impl<'a> SeenShading<'a> {
         self.shading.lights[light].light.strength
     }
 
+    /// All lights.
+    pub(super) fn scene_lights(&self) -> &'a [SceneLight] {
+        &self.shading.lights
+    }
+
+    /// A material of a body, by their numbers.
+    pub(super) fn material(&self, body: usize, material: usize) -> &'a MaterialShading {
+        &self.shading.bodies[body].materials[material]
+    }
+
     /// Whether a light shines from everywhere.
     pub(crate) fn is_ambient(&self, light: usize) -> bool {
         matches!(self.shading.lights[light].light.kind, LightKind::Ambient)
@@ -242,7 +252,7 @@ impl<'a> SeenShading<'a> {
             return finite(false_color(doppler));
         }
         let colors = colors();
-        let material = &self.shading.bodies[body].materials[material];
+        let material = self.material(body, material);
         if material.is_even() {
             return finite(material.shines(coloring, doppler, colors.sum()));
         }
@@ -253,7 +263,7 @@ impl<'a> SeenShading<'a> {
     #[inline]
     pub(crate) fn glow(&self, body: usize, material: usize, colors: &Colors) -> Option<Glow<'a>> {
         let coloring = self.shading.coloring;
-        let material = &self.shading.bodies[body].materials[material];
+        let material = self.material(body, material);
         let even = coloring != Coloring::Doppler && material.is_even();
         even.then(|| Glow { coloring, shift: Shift::new(material, coloring, colors.sum()) })
     }
@@ -283,10 +293,7 @@ impl<'a> SeenShading<'a> {
 
     /// A material of a body, for those who follow light further.
     pub(crate) fn surface(&self, body: usize, material: usize) -> SurfaceLight<'a> {
-        SurfaceLight {
-            coloring: self.shading.coloring,
-            material: &self.shading.bodies[body].materials[material],
-        }
+        SurfaceLight { coloring: self.shading.coloring, material: self.material(body, material) }
     }
 
     /// Light of one of the lights that reaches a point, if its way is free; of one that shines from everywhere, that from
@@ -462,7 +469,7 @@ impl MaterialShading {
 /// Beaming without colour: I_ν/ν³ is invariant (Nollert et al. 2000, Eq. 5), so a spectrum flat in ν is D³ times as
 /// bright, and all frequencies together D⁴.
 #[inline]
-fn beamed(coloring: Coloring, doppler: f64, unshifted: [f32; 3]) -> [f32; 3] {
+pub(super) fn beamed(coloring: Coloring, doppler: f64, unshifted: [f32; 3]) -> [f32; 3] {
     match coloring {
         Coloring::Flat => {
             let cube = (doppler * doppler * doppler) as f32;
@@ -475,7 +482,7 @@ fn beamed(coloring: Coloring, doppler: f64, unshifted: [f32; 3]) -> [f32; 3] {
 
 /// What can be averaged and written.
 #[inline]
-fn finite(color: [f32; 3]) -> [f32; 3] {
+pub(super) fn finite(color: [f32; 3]) -> [f32; 3] {
     const MOST: f32 = 1e35;
     // NaN is 0.
     color.map(|v| if v.is_nan() { 0.0 } else { v.clamp(-MOST, MOST) })

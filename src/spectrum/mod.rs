@@ -21,6 +21,6 @@ pub use observer::{XYZ_FROM_RGB, luminance, rgb_from_xyz, xyz_of_black_body};
 pub(crate) use response::of_line;
 pub use response::{Matrix, Response};
 pub use shape::{Shape, Spectrum, SpectrumError, Strength};
-pub(crate) use table::Near;
 pub use table::{DopplerTable, RowTable};
+pub(crate) use table::{Near, NearRows};
 pub use tabulated::{Tabulated, TabulatedError};

@@ -36,6 +36,7 @@ impl Default for Near {
 }
 
 impl Near {
+    #[inline(never)]
     fn new(low: usize, nodes: &[Node], own: [f32; 3]) -> Self {
         let color = |i: usize| {
             let [r, g, b] = nodes[i].map(Vec4::from_array);
@@ -53,6 +54,21 @@ impl Near {
     fn at(&self, t: f32) -> Vec4 {
         let [one, first, second, third] = self.powers;
         one + t * (first + t * (second + t * third))
+    }
+}
+
+/// Rows of a table times one colour, as [`Near`] keeps each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NearRows {
+    /// The number of the first.
+    low: usize,
+    rows: [Near; 4],
+}
+
+impl Default for NearRows {
+    /// None.
+    fn default() -> Self {
+        Self { low: usize::MAX, rows: [Near::default(); 4] }
     }
 }
 
@@ -221,12 +237,16 @@ impl DopplerTable {
     /// The same, of a surface of one colour asked over and over: what is `near` is kept for the next time.
     #[inline]
     pub(crate) fn color_near(&self, ln_doppler: f64, own: [f32; 3], near: &mut Near) -> [f32; 3] {
+        self.vector_near(ln_doppler, own, near).truncate().to_array()
+    }
+
+    #[inline]
+    fn vector_near(&self, ln_doppler: f64, own: [f32; 3], near: &mut Near) -> Vec4 {
         let (t, low) = self.place(ln_doppler);
         if near.low != low {
             *near = Near::new(low, &self.nodes[low..low + 4], own);
         }
-        let color = near.at(t as f32);
-        [color.x, color.y, color.z]
+        near.at(t as f32)
     }
 
     /// ln D of the second node, nodes a unit of ln D, and three columns a node.
@@ -359,31 +379,31 @@ impl RowTable {
         Self { start: -1.0, inverse_step, rows, between: Between::Lines, error }
     }
 
-    /// Rows around a place with their weights, and where to look in them.
-    #[inline]
-    fn place(&self, place: f64, ln_doppler: f64) -> ([f32; 4], &[DopplerTable], f64) {
+    /// Rows around a place with their weights, the number of the first, and where to look in them.
+    #[inline(always)]
+    fn place(&self, place: f64, ln_doppler: f64) -> ([f32; 4], usize, &[DopplerTable], f64) {
         // NaN becomes the first.
         let place = |last: usize| ((place - self.start) * self.inverse_step).max(0.0).min(last as f64);
         match self.between {
-            Between::One => ([1.0, 0.0, 0.0, 0.0], &self.rows, ln_doppler),
+            Between::One => ([1.0, 0.0, 0.0, 0.0], 0, &self.rows, ln_doppler),
             Between::Lamps => {
                 let within = place(self.rows.len() - 3);
                 let low = (within as usize).min(self.rows.len() - 4);
                 let lamp = self.start + within / self.inverse_step;
-                (weights(within - low as f64), &self.rows[low..low + 4], ln_doppler + lamp)
+                (weights(within - low as f64), low, &self.rows[low..low + 4], ln_doppler + lamp)
             }
             Between::Lines => {
                 let within = place(self.rows.len() - 1);
                 let low = (within as usize).min(self.rows.len() - 2);
                 let t = (within - low as f64) as f32;
-                ([1.0 - t, t, 0.0, 0.0], &self.rows[low..low + 2], ln_doppler)
+                ([1.0 - t, t, 0.0, 0.0], low, &self.rows[low..low + 2], ln_doppler)
             }
         }
     }
 
     /// The nine numbers at a place and ln D.
     pub fn at(&self, place: f64, ln_doppler: f64) -> [f32; 9] {
-        let (weights, rows, column) = self.place(place, ln_doppler);
+        let (weights, _, rows, column) = self.place(place, ln_doppler);
         let mut sum = [0.0; 9];
         for (row, w) in rows.iter().zip(weights) {
             let values = row.at(column);
@@ -395,11 +415,26 @@ impl RowTable {
     /// The colour seen at ln D of a surface of the colour `own`, at a place between the rows.
     #[inline]
     pub fn color(&self, place: f64, ln_doppler: f64, own: [f32; 3]) -> [f32; 3] {
-        let (weights, rows, column) = self.place(place, ln_doppler);
-        let mut sum = [0.0; 3];
-        for (row, w) in rows.iter().zip(weights) {
-            let color = row.color(column, own);
-            sum = [0, 1, 2].map(|i| sum[i] + w * color[i]);
+        self.color_near(place, ln_doppler, own, &mut NearRows::default()).truncate().to_array()
+    }
+
+    /// The same and a number more, of a surface of one colour asked over and over: what is `near` is kept for the next time.
+    #[inline]
+    pub(crate) fn color_near(&self, place: f64, ln_doppler: f64, own: [f32; 3], near: &mut NearRows) -> Vec4 {
+        match self.between {
+            Between::One => self.rows[0].vector_near(ln_doppler, own, &mut near.rows[0]),
+            _ => self.color_between(place, ln_doppler, own, near),
+        }
+    }
+
+    fn color_between(&self, place: f64, ln_doppler: f64, own: [f32; 3], near: &mut NearRows) -> Vec4 {
+        let (weights, low, rows, column) = self.place(place, ln_doppler);
+        if near.low != low {
+            *near = NearRows { low, ..NearRows::default() };
+        }
+        let mut sum = Vec4::ZERO;
+        for ((row, w), near) in rows.iter().zip(weights).zip(&mut near.rows) {
+            sum += w * row.vector_near(column, own, near);
         }
         sum
     }

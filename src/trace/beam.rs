@@ -249,7 +249,8 @@ impl Beam {
             if several.is_met[i] {
                 // SAFETY: as this function.
                 let (nearer, doubtful) = unsafe { self.meet::<L>(&several, i, *number) };
-                any |= nearer | (doubtful && self.settle(tree, origin, unit, (&several, i), *number));
+                any |= nearer;
+                any |= doubtful != 0 && self.settle(tree, origin, unit, *number, doubtful);
             }
         }
         any
@@ -281,9 +282,9 @@ impl Beam {
         Window { sign: self.sign, middle: self.middle, half }
     }
 
-    /// Tests all rays; whether any is hit nearer than before, and whether any cannot be told in f32.
+    /// Tests all rays; whether any is hit nearer than before, and which cannot be told in f32: a bit for each.
     #[inline(always)]
-    unsafe fn meet<L: Lanes>(&mut self, several: &Several, which: usize, number: u32) -> (bool, bool) {
+    unsafe fn meet<L: Lanes>(&mut self, several: &Several, which: usize, number: u32) -> (bool, u64) {
         let Rays { from_middle: [du, dv], nearness, found } = &mut self.rays;
         // SAFETY: as this function; there are whole vectors of rays.
         unsafe {
@@ -295,7 +296,7 @@ impl Beam {
             let near = splat(&several.nearness);
             let (above, below) = (L::splat(1.0 + CLOSE), L::splat(1.0 - CLOSE));
             let number = L::splat(f32::from_bits(number));
-            let (mut any, mut doubtful) = (0, 0);
+            let (mut any, mut doubtful) = (0, 0u64);
             for i in (0..self.count).step_by(L::COUNT) {
                 let (u, v) = (L::load(&du[i..]), L::load(&dv[i..]));
                 let inside = at(&e0, u, v)
@@ -312,9 +313,9 @@ impl Beam {
                 nearer.choose(near, known).store(&mut nearness[i..]);
                 nearer.choose(number, L::load(&found[i..])).store(&mut found[i..]);
                 any |= nearer.bits();
-                doubtful |= close.bits();
+                doubtful |= u64::from(close.bits()) << i;
             }
-            (any != 0, doubtful != 0)
+            (any != 0, doubtful)
         }
     }
 
@@ -326,21 +327,13 @@ impl Beam {
         tree: &Tree,
         origin: &Origin<'_>,
         unit: f64,
-        (several, which): (&Several, usize),
         number: u32,
+        mut doubtful: u64,
     ) -> bool {
         let mut any = false;
-        for i in 0..self.count {
-            let [du, dv] = self.rays.from_middle.map(|d| f64::from(d[i]));
-            let at = |of: &[EachNarrow; 3]| {
-                let [c, u, v] = of.map(|of| f64::from(of[which]));
-                u * du + (v * dv + c)
-            };
-            let inside = (0..3).all(|k| at(&several.functions[k]) >= f64::from(several.least[k][which]));
-            let known = f64::from(self.rays.nearness[i]);
-            if !inside || (at(&several.nearness) - known).abs() > 2.0 * f64::from(CLOSE) * known {
-                continue;
-            }
+        while doubtful != 0 {
+            let i = doubtful.trailing_zeros() as usize;
+            doubtful &= doubtful - 1;
             let exact = |number: u32| self.nearness(&tree.leaf(number), origin, unit, i);
             let face = |number: u32| tree.leaf(number).face;
             let (new, old) = (exact(number), self.found(i));

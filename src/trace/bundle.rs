@@ -290,11 +290,11 @@ impl InLanes {
         self.far = ways.far as f32 * (1.0 + ROUNDING);
         self.slack = most.iter().fold(0.0, |a, b| if *b > a { *b } else { a }) as f32 * ROUNDING;
         for k in 0..3 {
-            let (origin, direction, inverse) =
-                (range(&self.origin[k]), range(&self.direction[k]), range(&self.inverse[k]));
+            let (origin, direction) = (range(&self.origin[k]), range(&self.direction[k]));
             let backward = direction[1] < 0.0;
             let turned = |[low, high]: [f32; 2]| if backward { [-high, -low] } else { [low, high] };
-            let (origin, direction, inverse) = (turned(origin), turned(direction), turned(inverse));
+            let (origin, direction) = (turned(origin), turned(direction));
+            let inverse = [1.0 / direction[1], 1.0 / direction[0]];
             self.axes[k] = Axis {
                 backward,
                 origin,
@@ -429,9 +429,12 @@ fn range(values: &[f32; POINTS]) -> [f32; 2] {
             high[i] = if *value > high[i] { *value } else { high[i] };
         }
     }
-    let (low, high) =
-        (low.into_iter().fold(f32::INFINITY, f32::min), high.into_iter().fold(f32::NEG_INFINITY, f32::max));
-    [low, high]
+    let (mut least, mut greatest) = (low[0], high[0]);
+    for i in 1..GROUP {
+        least = if low[i] < least { low[i] } else { least };
+        greatest = if high[i] > greatest { high[i] } else { greatest };
+    }
+    [least, greatest]
 }
 
 #[cfg(test)]
@@ -468,7 +471,7 @@ mod tests {
                 let mut point =
                     |reach: f64| DVec3::from_array([0; 3].map(|_| random() - 0.5)) * reach * scale;
                 let (from, to) = (point(3.0), point(3.0));
-                points.count = POINTS - round % 2 * 5;
+                let number = POINTS - round % 2 * 5;
                 for i in 0..POINTS {
                     let way = to + point(width) - (from + point(width));
                     let way = if round % 8 == 3 { way * DVec3::X } else { way };
@@ -487,7 +490,7 @@ mod tests {
                 }
                 ways.far = if round % 4 < 2 { 1.0 } else { f64::INFINITY };
                 ways.open =
-                    (!0 >> (POINTS - points.count)) & if round % 5 == 4 { 0x0123_4567_89ab_cdef } else { !0 };
+                    (!0 >> (POINTS - number)) & if round % 5 == 4 { 0x0123_4567_89ab_cdef } else { !0 };
                 for (from, to) in (0..4).flat_map(|from| (0..4).map(move |to| (from, to))) {
                     let rays = Rays { stage: &stage, points: &points, ways: &ways, from, to };
                     let every = |i: usize| tree.leaves().any(|leaf| rays.ray(i).hits(&leaf));

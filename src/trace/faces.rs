@@ -1,6 +1,7 @@
 use super::stage::Target;
-use crate::light::{Facet, Glow, SeenShading};
+use crate::light::{Diffuse, Facet, Glow, SeenShading};
 use crate::scene::Colors;
+use crate::spectrum::NearRows;
 use glam::DVec3;
 
 /// A triangle that is met in a tile.
@@ -21,8 +22,12 @@ pub(super) struct Appearance<'a> {
     pub material: usize,
     /// Its colours, if they are.
     pub plain: Option<Colors>,
-    /// All there is to know, if it is.
+    /// All there is to know, if it shines by itself.
     pub glow: Option<Glow<'a>>,
+    /// If it only reflects, and has no gloss.
+    pub diffuse: Option<Diffuse<'a>>,
+    /// What is kept of tables, of its one colour: the number of the first of those for each light.
+    pub tables: usize,
 }
 
 impl<'a> Face<'a> {
@@ -35,22 +40,29 @@ impl<'a> Face<'a> {
 
     /// The mesh's normal at a point of it: of any length, on the side that is seen.
     #[inline]
-    pub fn normal_seen(&self, at: DVec3) -> DVec3 {
-        if self.facet.mesh().normals.is_empty() { -self.plane } else { self.facet.normal_seen(at) }
+    pub fn normal_seen(&self, at: impl FnOnce() -> DVec3) -> DVec3 {
+        if self.facet.mesh().normals.is_empty() { -self.plane } else { self.facet.normal_seen(at()) }
     }
 
-    /// The triangle, and what it looks like.
+    /// The triangle, and what it looks like. `kept` are tables of all that were looked at.
     pub fn appearance(
         &mut self,
         shading: &SeenShading<'a>,
         target: &Target,
+        kept: &mut Vec<NearRows>,
     ) -> (&Facet<'a>, &mut Appearance<'a>) {
         let facet = &self.facet;
         let look = self.look.get_or_insert_with(|| {
             let material = target.mesh.material_index(facet.face());
             let plain = facet.plain_colors();
             let glow = plain.as_ref().and_then(|colors| shading.glow(target.body, material, colors));
-            Appearance { material, plain, glow }
+            let dark = plain.is_none_or(|colors| colors.emission == [0.0; 3]);
+            let diffuse = shading.diffuse(target.body, material).filter(|_| dark);
+            let tables = kept.len();
+            if diffuse.is_some() && plain.is_some() {
+                kept.resize(tables + shading.lights(), NearRows::default());
+            }
+            Appearance { material, plain, glow, diffuse, tables }
         });
         (facet, look)
     }
@@ -62,21 +74,29 @@ const SLOTS: usize = 64;
 /// Triangles that are met in a tile, each once, or more often where there are many.
 pub(super) struct Faces<'a> {
     pub all: Vec<Face<'a>>,
+    /// Of those that only reflect: see [`Appearance::tables`].
+    pub tables: Vec<NearRows>,
     /// Numbers of those met last, by their last digits.
     slots: [u32; SLOTS],
 }
 
 impl Default for Faces<'_> {
     fn default() -> Self {
-        Self { all: Vec::new(), slots: [0; SLOTS] }
+        Self { all: Vec::new(), tables: Vec::new(), slots: [0; SLOTS] }
     }
 }
 
 impl<'a> Faces<'a> {
+    /// Forgets them.
+    pub fn clear(&mut self) {
+        self.all.clear();
+        self.tables.clear();
+    }
+
     /// Forgets them before another sample, where they are too many to be found again.
     pub fn limit(&mut self) {
         if self.all.len() > 4 * SLOTS {
-            self.all.clear();
+            self.clear();
         }
     }
 
@@ -121,7 +141,7 @@ mod tests {
                 faces.limit();
             }
             if step % 300 == 0 {
-                faces.all.clear();
+                faces.clear();
             }
             let index = usize::from(random() < 0.5);
             let leaf = (random() * tree.count() as f64) as u32;

@@ -109,6 +109,17 @@ impl Sights {
         DVec3::new(self.rest[0][i], self.rest[1][i], self.rest[2][i])
     }
 
+    /// From the observer's event to those where they meet that, in its rest frame; anything where they meet nothing.
+    pub fn events(&self, events: &mut [[f64; RAYS]; 4]) {
+        let [t, x, y, z] = events;
+        let [a, b, c] = &self.rest;
+        for i in 0..RAYS {
+            let s = 1.0 / self.nearness[i];
+            [x[i], y[i], z[i]] = [s * a[i], s * b[i], s * c[i]];
+            t[i] = -(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
+        }
+    }
+
     /// Where it meets that, from the observer in its rest frame.
     #[inline]
     pub fn point(&self, i: usize) -> DVec3 {

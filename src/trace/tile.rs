@@ -10,7 +10,7 @@ use super::sights::Sights;
 use super::stage::Stage;
 use crate::color::Coloring;
 use crate::film::Rows;
-use crate::light::{Points, SeenShading, Ways, logarithms};
+use crate::light::{Arrivals, Points, SeenShading, Ways, logarithms};
 use crate::scene::{Lens, Projection, Sky};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -44,6 +44,8 @@ pub(super) struct Tile {
     points: Points,
     ways: Ways,
     lit: Vec<u64>,
+    /// What arrives of each light, by line of sight.
+    arrivals: Vec<Arrivals>,
     count: Count,
 }
 
@@ -112,6 +114,8 @@ pub(super) struct Job<'a> {
     pub samples: &'a [[f64; 2]],
     /// Whether AVX2 may be used.
     pub vectors: bool,
+    /// Whether more than rays matters.
+    pub shaded: bool,
     /// Rays to each light, and how many of them are blocked.
     pub to_lights: &'a [[AtomicU64; 2]],
     /// Where light of surfaces on each other is followed.
@@ -167,7 +171,7 @@ impl Tile {
                 self.count.primary += pass.len() as u64 * u64::from(size[0] * size[1]);
                 continue;
             }
-            faces.all.clear();
+            faces.clear();
             for number in pass.clone() {
                 faces.limit();
                 self.sights.aim(job.lens, [left, top], size, job.samples[number]);
@@ -257,30 +261,33 @@ impl Tile {
         }
     }
 
-    /// Which lights reach what is seen: a bit a line of sight for each.
+    /// Which lights reach what is seen, a bit a line of sight for each, and how strong they are there.
     fn light(&mut self, job: &Job<'_>, faces: &Faces<'_>) {
         let lights = job.shading.lights();
         self.lit.clear();
         self.lit.resize(lights, !0);
+        self.arrivals.resize_with(lights, Arrivals::default);
         if lights == 0 {
             return;
         }
+        self.sights.events(&mut self.points.events);
         for met in 0..self.met.len() {
             let index = self.met[met];
             let target = &job.stage.targets[index];
             self.gather(job, index, faces);
-            if self.points.count == 0 {
+            if self.points.mask == 0 {
                 continue;
             }
             for light in 0..lights {
                 let Self { points, ways, bundle, .. } = self;
                 job.shading.ways(target.body, light, points, ways, job.vectors);
-                let mut blocked = bundle.blocked(job.stage, index, points, ways, job.vectors);
-                let [asked, stopped] = [ways.open, blocked].map(|bits| u64::from(bits.count_ones()));
-                while blocked != 0 {
-                    self.lit[light] &= !(1 << self.numbers[blocked.trailing_zeros() as usize]);
-                    blocked &= blocked - 1;
+                if job.shaded {
+                    let arrivals = &mut self.arrivals[light];
+                    job.shading.arrivals((target.body, light), points, ways, arrivals, job.vectors);
                 }
+                let blocked = bundle.blocked(job.stage, index, points, ways, job.vectors);
+                self.lit[light] &= !blocked;
+                let [asked, stopped] = [ways.open, blocked].map(|bits| u64::from(bits.count_ones()));
                 self.count.shadow += asked;
                 self.count.blocked += stopped;
                 let [all_asked, all_stopped] = &job.to_lights[light];
@@ -292,24 +299,20 @@ impl Tile {
 
     /// Points of one body that may be lit.
     fn gather(&mut self, job: &Job<'_>, index: usize, faces: &Faces<'_>) {
-        self.points.count = 0;
-        self.numbers.clear();
+        self.points.mask = 0;
         let target = &job.stage.targets[index];
-        // The triangle met last, and whether it may be lit.
-        let (mut last, mut lit) = (NONE, false);
-        for i in 0..self.sights.count {
-            let number = self.sights.faces[i];
-            let Some(face) = faces.all.get(number as usize).filter(|face| face.target == index) else {
-                continue;
-            };
+        // The triangle met last, if it may be lit.
+        let (mut last, mut lit) = (NONE, None);
+        for (i, &number) in self.sights.faces[..self.sights.count].iter().enumerate() {
             if number != last {
                 last = number;
-                lit = job.shading.is_lit(target.body, target.mesh.material_index(face.facet.face()));
+                lit = faces.all.get(number as usize).filter(|face| {
+                    let material = || target.mesh.material_index(face.facet.face());
+                    face.target == index && job.shading.is_lit(target.body, material())
+                });
             }
-            if lit {
-                let at = self.sights.point(i);
-                self.points.push(face.facet.face(), at, face.normal_seen(at));
-                self.numbers.push(i);
+            if let Some(face) = lit {
+                self.points.add(i, face.facet.face(), face.normal_seen(|| self.sights.point(i)));
             }
         }
     }
@@ -335,7 +338,8 @@ impl Tile {
             let target = &job.stage.targets[face.target];
             let (index, leaf) = (face.target, face.leaf);
             let doppler = sights.dopplers[number];
-            let (facet, Appearance { material, plain, glow }) = face.appearance(job.shading, target);
+            let (facet, look) = face.appearance(job.shading, target, &mut faces.tables);
+            let Appearance { material, plain, glow, diffuse, tables } = look;
             let material = *material;
             let at = || sights.point(number);
             let looks = || {
@@ -346,23 +350,27 @@ impl Tile {
                 [here, to(DVec2::X), to(DVec2::Y)].map(|v| target.rest_direction(v, v.length()))
             };
             let colors = || plain.unwrap_or_else(|| facet.colors(at(), looks));
-            let shadowed = || {
-                job.shading.radiance_with_shadows(
-                    target.body,
-                    material,
-                    doppler,
-                    colors,
-                    || facet.point(at()),
-                    // Paths find out where light from everywhere comes in.
-                    |light| {
-                        self.lit[light] >> number & 1 == 1
-                            && !(job.world.is_some() && job.shading.is_ambient(light))
-                    },
-                )
+            // Paths find out where light from everywhere comes in.
+            let reaches = |light: usize| {
+                self.lit[light] >> number & 1 == 1 && !(job.world.is_some() && job.shading.is_ambient(light))
             };
-            let mut light = match glow {
-                Some(glow) => glow.radiance(doppler, logarithm),
-                None => shadowed(),
+            let shadowed = || {
+                let point = || facet.point(at());
+                job.shading.radiance_with_shadows(target.body, material, doppler, colors, point, reaches)
+            };
+            let mut light = match (glow, diffuse) {
+                (Some(glow), _) => glow.radiance(doppler, logarithm),
+                (None, Some(diffuse)) => {
+                    let colors = colors();
+                    if colors.emission == [0.0; 3] {
+                        let kept = plain.is_some().then(|| &mut faces.tables[*tables..]);
+                        let arrives = |light: usize| reaches(light).then(|| self.arrivals[light].at(number));
+                        diffuse.radiance(arrives, [doppler, logarithm], colors.base, kept)
+                    } else {
+                        shadowed()
+                    }
+                }
+                (None, None) => shadowed(),
             };
             if let Some(world) = job.world
                 && job.shading.is_lit(target.body, material)

@@ -1,0 +1,259 @@
+use super::SeenShading;
+use super::incidence::Incidence;
+use super::logarithm::logarithms;
+use super::points::{POINTS, Points, Ways};
+use super::seen::{beamed, finite};
+use super::shading::{MaterialShading, SceneLight};
+use crate::color::Coloring;
+use crate::spectrum::NearRows;
+use glam::{Vec3, Vec4};
+use std::f64::consts::PI;
+
+/// What reaches [`Points`] from one light, if nothing is in the way, as surfaces without gloss reflect it.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(crate) struct Arrivals {
+    /// What the colour is multiplied by.
+    pub amounts: [f64; POINTS],
+    /// Place between the rows of a table of what is reflected.
+    pub rows: [f64; POINTS],
+}
+
+impl Default for Arrivals {
+    fn default() -> Self {
+        Self { amounts: [0.0; POINTS], rows: [0.0; POINTS] }
+    }
+}
+
+/// A material that reflects without gloss, in one point or many.
+#[derive(Clone, Copy)]
+pub(crate) struct Diffuse<'a> {
+    coloring: Coloring,
+    lights: &'a [SceneLight],
+    material: &'a MaterialShading,
+}
+
+impl<'a> SeenShading<'a> {
+    /// What reaches points of a body from a light along the `ways` there: all else stays as it is. With AVX2 if `vectors` and
+    /// there is such.
+    pub(crate) fn arrivals(
+        &self,
+        (body, light): (usize, usize),
+        points: &Points,
+        ways: &Ways,
+        arrivals: &mut Arrivals,
+        vectors: bool,
+    ) {
+        if let Incidence::Ambient { axis, irradiance, .. } = self.incidence(body, light) {
+            let radiance = self.strength(light);
+            for i in (0..POINTS).filter(|i| points.mask >> i & 1 == 1) {
+                let cos_psi = axis.dot(points.normal(i).normalize_or_zero());
+                let amount = match self.coloring() {
+                    Coloring::Spectral => 1.0,
+                    Coloring::Flat => irradiance.at(cos_psi)[0],
+                    Coloring::Bolometric => irradiance.at(cos_psi)[1],
+                    Coloring::Geometry | Coloring::Doppler => PI,
+                };
+                (arrivals.amounts[i], arrivals.rows[i]) = (radiance * amount / PI, cos_psi);
+            }
+            return;
+        }
+        let mut reaching = Arrivals::default();
+        #[cfg(target_arch = "x86_64")]
+        if vectors && crate::processor::has_avx2() {
+            // SAFETY: the processor has both.
+            unsafe { reaching.reach_avx2(self.coloring(), points, ways) };
+        } else {
+            reaching.reach(self.coloring(), points, ways);
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        reaching.reach(self.coloring(), points, ways);
+        if self.coloring() == Coloring::Spectral {
+            logarithms(&ways.dopplers, &mut reaching.rows, vectors);
+        }
+        for i in (0..POINTS).filter(|i| points.mask >> i & 1 == 1) {
+            (arrivals.amounts[i], arrivals.rows[i]) = (reaching.amounts[i], reaching.rows[i]);
+        }
+    }
+
+    /// Of a material that reflects without gloss, all there is to know.
+    pub(crate) fn diffuse(&self, body: usize, material: usize) -> Option<Diffuse<'a>> {
+        let (coloring, lights) = (self.coloring(), self.scene_lights());
+        let material = self.material(body, material);
+        let is_diffuse = coloring != Coloring::Doppler && material.lit && material.gloss.is_even();
+        is_diffuse.then_some(Diffuse { coloring, lights, material })
+    }
+}
+
+impl Arrivals {
+    /// At one of them.
+    #[inline]
+    pub fn at(&self, i: usize) -> [f64; 2] {
+        [self.amounts[i], self.rows[i]]
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn reach_avx2(&mut self, coloring: Coloring, points: &Points, ways: &Ways) {
+        self.reach(coloring, points, ways);
+    }
+
+    /// From one direction each, in a loop of plain arithmetic, which compilers make vectors of: E′_ν = D E_ν. Radiance goes
+    /// with D³, but from an angle smaller by D².
+    #[inline(always)]
+    fn reach(&mut self, coloring: Coloring, points: &Points, ways: &Ways) {
+        let ([_, x, y, z], [a, b, c]) = (&ways.backs, &points.normals);
+        let mut amounts = [0.0; POINTS];
+        for (i, amount) in amounts.iter_mut().enumerate() {
+            let lengths = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt()
+                * (a[i] * a[i] + b[i] * b[i] + c[i] * c[i]).sqrt();
+            let cosine = (a[i] * x[i] + b[i] * y[i] + c[i] * z[i]) / lengths;
+            // Also 0 for NaN.
+            let lit = if cosine > 0.0 { cosine } else { 0.0 };
+            *amount = ways.irradiances[i] * lit * (1.0 / PI);
+        }
+        let lamps = &ways.dopplers;
+        match coloring {
+            Coloring::Spectral => (0..POINTS).for_each(|i| amounts[i] /= lamps[i] * lamps[i]),
+            Coloring::Flat => (0..POINTS).for_each(|i| amounts[i] *= lamps[i]),
+            Coloring::Bolometric => (0..POINTS).for_each(|i| amounts[i] *= lamps[i] * lamps[i]),
+            Coloring::Geometry | Coloring::Doppler => {}
+        }
+        self.amounts = amounts;
+    }
+}
+
+impl Diffuse<'_> {
+    /// Linear sRGB radiance, in units of the film's white, of a surface of a colour that is seen at a Doppler factor, whose
+    /// logarithm matters only for spectra: of each light, what [`Arrivals::at`] has where it reaches it. `kept` is kept a light,
+    /// if all of the surface has that colour.
+    #[inline]
+    pub fn radiance(
+        &self,
+        arrives: impl Fn(usize) -> Option<[f64; 2]>,
+        [doppler, logarithm]: [f64; 2],
+        base: [f32; 3],
+        mut kept: Option<&mut [NearRows]>,
+    ) -> [f32; 3] {
+        let mut sum = Vec4::ZERO;
+        for (light, of) in self.lights.iter().enumerate() {
+            let Some([amount, row]) = arrives(light) else { continue };
+            let color = match self.coloring {
+                Coloring::Spectral => {
+                    let Some(table) = self.material.reflected.get(light) else { continue };
+                    match kept.as_mut().and_then(|kept| kept.get_mut(light)) {
+                        Some(near) => table.color_near(row, logarithm, base, near),
+                        None => table.color_near(row, logarithm, base, &mut NearRows::default()),
+                    }
+                }
+                coloring => {
+                    let unshifted = [0, 1, 2].map(|i| base[i] * of.color[i]);
+                    Vec3::from_array(beamed(coloring, doppler, unshifted)).extend(0.0)
+                }
+            };
+            sum += color * amount as f32;
+        }
+        finite(sum.truncate().to_array())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Facet, Shading};
+    use super::*;
+    use crate::relativity::Motion;
+    use crate::scene::{Body, Colors, Light, LightKind, Material, Scene, Surface, View, shapes};
+    use crate::spectrum::Spectrum;
+    use glam::DVec3;
+    use terrell_geodesic::{Celerity, Event, Tetrad};
+
+    /// All together, with and without vectors, against one by one, whatever a pixel shows: lamps and bodies in motion and at
+    /// rest, spots, light from infinity and from everywhere; with what was kept and without.
+    #[test]
+    fn points_are_lit_as_one_by_one() {
+        let motion = |v: f64| Motion {
+            celerity: Celerity::new(DVec3::new(v, 0.2 * v, 0.0)).unwrap(),
+            origin: Event::new(-1.0, 0.5, 4.0, 0.2),
+        };
+        let mut mesh = shapes::sphere(2);
+        mesh.materials = vec![Material { surface: Surface::Lit, ..Material::default() }];
+        let mut scene = Scene::new("s", vec![Body::new("ball", mesh, motion(1.0))], View::default());
+        let position = DVec3::new(1.0, -2.0, 0.5);
+        for (kind, speed) in [
+            (LightKind::Point { position }, 1.0),
+            (LightKind::Point { position }, 2.0),
+            (LightKind::Spot { position, direction: DVec3::Y, cone: [1.0, 2.5] }, -0.5),
+            (LightKind::Distant { direction: DVec3::new(0.6, 0.8, 0.0) }, 2.0),
+            (LightKind::Ambient, 0.0),
+        ] {
+            scene.lights.push(Light {
+                name: "l".into(),
+                kind,
+                color: [0.9, 1.0, 0.8],
+                spectrum: Spectrum::default(),
+                strength: 2.0,
+                motion: motion(speed),
+            });
+        }
+        let observer = Tetrad::of_world(Event::origin());
+        let mesh = &scene.bodies[0].mesh;
+        let base = [0.7, 0.2, 0.5];
+        let (mut points, mut ways) = (Points::default(), Ways::default());
+        for coloring in [Coloring::Spectral, Coloring::Flat, Coloring::Bolometric, Coloring::Geometry] {
+            let shading = Shading::new(&scene, [&observer], coloring).unwrap();
+            let seen = shading.seen_by(&observer);
+            let diffuse = seen.diffuse(0, 0).unwrap();
+            let mut kept = vec![NearRows::default(); 5];
+            let mut lit = [0; 5];
+            points.mask = 0;
+            let facets: Vec<(Facet<'_>, DVec3)> = (0..POINTS)
+                .map(|face| {
+                    let corners = mesh.corners(face).map(|c| c + DVec3::new(0.3, 5.0, 0.1));
+                    let at = 0.2 * corners[0] + 0.5 * corners[1] + 0.3 * corners[2];
+                    (Facet::new(mesh, face, corners), at)
+                })
+                .collect();
+            for (i, (facet, at)) in facets.iter().enumerate().filter(|(i, _)| i % 7 != 3) {
+                points.add(i, facet.face(), 3.0 * facet.normal_seen(*at));
+                let event = facet.point(*at).event();
+                points.events[0][i] = event.t;
+                (0..3).for_each(|k| points.events[k + 1][i] = event.xyz()[k]);
+            }
+            for (light, vectors) in (0..5).flat_map(|l| [(l, false), (l, true)]) {
+                let mut arrivals = Arrivals { amounts: [-1.0; POINTS], ..Arrivals::default() };
+                seen.ways(0, light, &points, &mut ways, vectors);
+                seen.arrivals((0, light), &points, &ways, &mut arrivals, vectors);
+                for (i, (facet, at)) in facets.iter().enumerate() {
+                    if i % 7 == 3 {
+                        assert_eq!(arrivals.amounts[i], -1.0, "only of points there are");
+                        continue;
+                    }
+                    let doppler = 0.3 + 0.05 * i as f64;
+                    let colors = || Colors { base, ..Colors::default() };
+                    let expected = seen.radiance_with_shadows(
+                        0,
+                        0,
+                        doppler,
+                        colors,
+                        || facet.point(*at),
+                        |other| other == light,
+                    );
+                    let arrives = |other| (other == light).then(|| arrivals.at(i));
+                    for kept in [None, Some(&mut kept[..])] {
+                        let got = diffuse.radiance(arrives, [doppler, doppler.ln()], base, kept);
+                        for (got, expected) in got.iter().zip(expected) {
+                            // A few roundings of f32, and where colours cancel those of what is cancelled.
+                            let off = (got - expected).abs();
+                            assert!(
+                                off < 2e-6 * expected.abs() + 1e-9,
+                                "{coloring:?} {light} {got} {expected}"
+                            );
+                        }
+                    }
+                    lit[light] += usize::from(expected != [0.0; 3]);
+                }
+            }
+            assert!(lit.iter().all(|n| *n > 10), "{lit:?}");
+        }
+    }
+}
