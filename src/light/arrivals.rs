@@ -1,6 +1,6 @@
 use super::SeenShading;
 use super::incidence::Incidence;
-use super::logarithm::logarithms;
+use super::logarithm::{ln, logarithms};
 use super::points::{POINTS, Points, Ways};
 use super::seen::{beamed, finite};
 use super::shading::{MaterialShading, SceneLight};
@@ -69,7 +69,13 @@ impl<'a> SeenShading<'a> {
         #[cfg(not(target_arch = "x86_64"))]
         reaching.reach(self.coloring(), points, ways);
         if self.coloring() == Coloring::Spectral {
-            logarithms(&ways.dopplers, &mut reaching.rows, vectors);
+            let one = ways.dopplers[0];
+            // Of a light from infinity, or a lamp that does not move.
+            if ways.dopplers.iter().all(|doppler| *doppler == one) {
+                reaching.rows.fill(ln(one));
+            } else {
+                logarithms(&ways.dopplers, &mut reaching.rows, vectors);
+            }
         }
         for i in (0..POINTS).filter(|i| points.mask >> i & 1 == 1) {
             (arrivals.amounts[i], arrivals.rows[i]) = (reaching.amounts[i], reaching.rows[i]);
