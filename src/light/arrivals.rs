@@ -6,7 +6,7 @@ use super::seen::{beamed, finite};
 use super::shading::{MaterialShading, SceneLight};
 use crate::color::Coloring;
 use crate::spectrum::NearRows;
-use glam::{Vec3, Vec4};
+use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
 /// What reaches [`Points`] from one light, if nothing is in the way, as surfaces without gloss reflect it.
@@ -114,9 +114,7 @@ impl Arrivals {
             let lengths = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt()
                 * (a[i] * a[i] + b[i] * b[i] + c[i] * c[i]).sqrt();
             let cosine = (a[i] * x[i] + b[i] * y[i] + c[i] * z[i]) / lengths;
-            // Also 0 for NaN.
-            let lit = if cosine > 0.0 { cosine } else { 0.0 };
-            *amount = ways.irradiances[i] * lit * (1.0 / PI);
+            *amount = ways.irradiances[i] * cosine * (1.0 / PI);
         }
         let lamps = &ways.dopplers;
         match coloring {
@@ -125,7 +123,9 @@ impl Arrivals {
             Coloring::Bolometric => (0..POINTS).for_each(|i| amounts[i] *= lamps[i] * lamps[i]),
             Coloring::Geometry | Coloring::Doppler => {}
         }
-        self.amounts = amounts;
+        // Also nothing where something is no number.
+        self.amounts =
+            amounts.map(|amount| if amount > 0.0 && amount < f64::INFINITY { amount } else { 0.0 });
     }
 }
 
@@ -141,7 +141,7 @@ impl Diffuse<'_> {
         base: [f32; 3],
         mut kept: Option<&mut [NearRows]>,
     ) -> [f32; 3] {
-        let mut sum = Vec4::ZERO;
+        let mut sum = DVec3::ZERO;
         for (light, of) in self.lights.iter().enumerate() {
             let Some([amount, row]) = arrives(light) else { continue };
             let color = match self.coloring {
@@ -157,9 +157,9 @@ impl Diffuse<'_> {
                     Vec3::from_array(beamed(coloring, doppler, unshifted)).extend(0.0)
                 }
             };
-            sum += color * amount as f32;
+            sum += color.as_dvec4().truncate() * amount;
         }
-        finite(sum.truncate().to_array())
+        finite(sum.as_vec3().to_array())
     }
 }
 
@@ -170,7 +170,6 @@ mod tests {
     use crate::relativity::Motion;
     use crate::scene::{Body, Colors, Light, LightKind, Material, Scene, Surface, View, shapes};
     use crate::spectrum::Spectrum;
-    use glam::DVec3;
     use terrell_geodesic::{Celerity, Event, Tetrad};
 
     /// All together, with and without vectors, against one by one, whatever a pixel shows: lamps and bodies in motion and at
@@ -201,6 +200,8 @@ mod tests {
                 motion: motion(speed),
             });
         }
+        let dark = Light { strength: 0.0, ..scene.lights[1].clone() };
+        scene.lights.push(dark);
         let observer = Tetrad::of_world(Event::origin());
         let mesh = &scene.bodies[0].mesh;
         let base = [0.7, 0.2, 0.5];
@@ -209,7 +210,7 @@ mod tests {
             let shading = Shading::new(&scene, [&observer], coloring).unwrap();
             let seen = shading.seen_by(&observer);
             let diffuse = seen.diffuse(0, 0).unwrap();
-            let mut kept = vec![NearRows::default(); 5];
+            let mut kept = vec![NearRows::default(); 6];
             let mut lit = [0; 5];
             points.mask = 0;
             let facets: Vec<(Facet<'_>, DVec3)> = (0..POINTS)
@@ -219,6 +220,8 @@ mod tests {
                     (Facet::new(mesh, face, corners), at)
                 })
                 .collect();
+            // The others' events are no numbers.
+            points.events = [[f64::NAN; POINTS]; 4];
             for (i, (facet, at)) in facets.iter().enumerate().filter(|(i, _)| i % 7 != 3) {
                 points.add(i, facet.face(), 3.0 * facet.normal_seen(*at));
                 let event = facet.point(*at).event();
@@ -260,6 +263,12 @@ mod tests {
                 }
             }
             assert!(lit.iter().all(|n| *n > 10), "{lit:?}");
+            // A lamp that is out gives nothing, whatever was asked before, and elsewhere.
+            points.mask = !0;
+            let mut arrivals = Arrivals::default();
+            seen.ways(0, 5, &points, &mut ways, true);
+            seen.arrivals((0, 5), &points, &ways, &mut arrivals, true);
+            assert_eq!(arrivals.amounts, [0.0; POINTS]);
         }
     }
 }

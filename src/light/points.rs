@@ -19,7 +19,7 @@ pub(crate) struct Points {
     /// From the observer's event to theirs.
     pub events: Vectors,
     /// On the side that is seen, of any length.
-    pub normals: [[f64; POINTS]; 3],
+    pub(super) normals: [[f64; POINTS]; 3],
 }
 
 /// Ways from [`Points`] back to one light.
@@ -31,10 +31,10 @@ pub(crate) struct Ways {
     pub open: u64,
     /// Where they end, in units of the vector.
     pub far: f64,
-    /// ν at the surface over ν of the light.
-    pub dopplers: [f64; POINTS],
+    /// ν at the surface over ν of the light; 1 where nothing comes from it.
+    pub(super) dopplers: [f64; POINTS],
     /// Irradiance, were there no shift, of a surface that faces the light; 0 where nothing comes from it.
-    pub irradiances: [f64; POINTS],
+    pub(super) irradiances: [f64; POINTS],
 }
 
 impl Default for Points {
@@ -110,7 +110,7 @@ impl SeenShading<'_> {
                 let strength = self.strength(light);
                 match self.near(body, light) {
                     Some(near) if strength > 0.0 => near.ways(strength, points, ways, vectors),
-                    _ => ways.irradiances.fill(0.0),
+                    _ => (ways.dopplers, ways.irradiances) = ([1.0; POINTS], [0.0; POINTS]),
                 }
             }
             Incidence::Ambient { .. } => {}
@@ -173,7 +173,7 @@ impl NearLight {
         for (i, possible) in possible.iter_mut().enumerate() {
             let doppler = -ways.backs[0][i] / way[0][i];
             *possible = (doppler > 0.0) & (doppler < f64::INFINITY);
-            ways.dopplers[i] = doppler;
+            ways.dopplers[i] = if *possible { doppler } else { 1.0 };
             ways.irradiances[i] = if *possible { strength / (way[0][i] * way[0][i]) } else { 0.0 };
         }
         if let Some((axis, [bright, dark])) = self.cone() {

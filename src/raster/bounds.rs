@@ -72,7 +72,7 @@ impl<'a> Bounder<'a> {
     /// The pixels whose samples may see something within a hull, in the camera's axes.
     #[inline]
     pub fn of_hull(&self, hull: &Hull) -> [Option<Rect>; 2] {
-        if let Some(rect) = self.of_small(hull.corners.map(|c| self.place(c)), hull.beside, false) {
+        if let Some(rect) = self.of_small(hull.corners.map(|c| self.place(c)), hull.beside, 0.0) {
             return [rect, None];
         }
         let points = &hull.points();
@@ -100,7 +100,7 @@ impl<'a> Bounder<'a> {
         let inverse = 1.0 / seen.z;
         let [x, y] = [seen.x, -seen.y].map(|c| c * (self.lens.focal().x * inverse));
         // Also false for NaN.
-        let is_near = x.abs().max(y.abs()) < MOST && inverse > 0.0 && inverse < 1e30;
+        let is_near = x.abs() < MOST && y.abs() < MOST && inverse > 1e-30 && inverse < 1e30;
         if self.lens.projection() == Projection::Pinhole && is_near {
             Place(Vec4::new(x as f32, y as f32, 0.0, inverse as f32))
         } else {
@@ -109,10 +109,11 @@ impl<'a> Bounder<'a> {
     }
 
     /// The pixels whose samples may see a triangle on a pinhole's picture, by where its corners are and how far beside the
-    /// flat one it is seen at most: as [`of_hull`](Self::of_hull), where that is far less than a pixel; none where it is more,
-    /// or too far out to be told. There are no pixels for one that is surely seen from the back it does not have.
+    /// flat one it is seen at most: as [`of_hull`](Self::of_hull), where that is less than a pixel; none where it is more, or too
+    /// far out to be told. There are no pixels for one that is surely seen from the back it does not have: `back` is the sign of
+    /// its area then, from one corner to the next, and 0 if it has one.
     #[inline]
-    pub fn of_small(&self, [a, b, c]: [Place; 3], beside: f64, one_sided: bool) -> Option<Option<Rect>> {
+    pub fn of_small(&self, [a, b, c]: [Place; 3], beside: f64, back: f32) -> Option<Option<Rect>> {
         let (low, high) = (a.0.min(b.0).min(c.0), a.0.max(b.0).max(c.0));
         // What is moved by δ at z is seen elsewhere by (δ/z)(f + |place|), to first order, and by a thousandth of it more.
         let moved = beside as f32 * high.w;
@@ -122,15 +123,12 @@ impl<'a> Bounder<'a> {
         if !(moved < 1e-3 && off < 1.0) {
             return None;
         }
-        if one_sided {
-            let (ab, ac) = (b.0 - a.0, c.0 - a.0);
-            // Twice its area, positive if its back is seen: sides that are not straight take as much off that as they are
-            // long times how far they are off, which single precision adds to.
-            let area = ab.x * ac.y - ab.y * ac.x;
-            let size = high - low;
-            if area > 4.0 * (off + SLACK_PX as f32) * (size.x + size.y) {
-                return Some(None);
-            }
+        let (ab, ac, size) = (b.0 - a.0, c.0 - a.0, high - low);
+        // Twice its area: sides that are not straight take as much off that as they are long times how far they are off, which
+        // single precision adds to.
+        let area = ab.x * ac.y - ab.y * ac.x;
+        if back * area > 4.0 * (off + SLACK_PX as f32) * (size.x + size.y) {
+            return Some(None);
         }
         let (middle, off) = (self.lens.middle(), f64::from(off));
         let [x, y] = [[low.x, high.x], [low.y, high.y]].map(|range| range.map(f64::from));
@@ -212,7 +210,8 @@ impl<'a> Bounder<'a> {
     }
 }
 
-/// Where something is seen on a pinhole's picture: pixels from the middle to the right and down, and 1/z; single precision.
+/// Where something is seen on a pinhole's picture: pixels from the middle to the right and down, nothing, and 1/z; single
+/// precision.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place(Vec4);
 

@@ -26,7 +26,7 @@ pub(super) struct Appearance<'a> {
     pub glow: Option<Glow<'a>>,
     /// If it only reflects, and has no gloss.
     pub diffuse: Option<Diffuse<'a>>,
-    /// What is kept of tables, of its one colour: the number of the first of those for each light.
+    /// Of what is kept of tables for its one colour, if it has one, one a light: the number of the first.
     pub tables: usize,
 }
 
@@ -41,7 +41,12 @@ impl<'a> Face<'a> {
     /// The mesh's normal at a point of it: of any length, on the side that is seen.
     #[inline]
     pub fn normal_seen(&self, at: impl FnOnce() -> DVec3) -> DVec3 {
-        if self.facet.mesh().normals.is_empty() { -self.plane } else { self.facet.normal_seen(at()) }
+        if self.facet.mesh().normals.is_empty() {
+            return -self.plane;
+        }
+        let normal = self.facet.normal_seen(at());
+        // One that is no direction is the triangle's own.
+        if normal.length_squared().is_normal() { normal } else { -self.plane }
     }
 
     /// The triangle, and what it looks like. `kept` are tables of all that were looked at.

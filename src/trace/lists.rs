@@ -66,6 +66,7 @@ impl Lists {
         let columns = lens.width().div_ceil(SIDE);
         let tiles = columns * lens.height().div_ceil(SIDE);
         let bounds = Bounds::new(target, lens, samples);
+        debug_assert!(target.tree.count() == 0 || !target.tree.clusters().is_empty(), "a tree to be listed");
         let found: Vec<Found> = target
             .tree
             .clusters()
@@ -182,6 +183,9 @@ struct Bounds<'a> {
     seen: Seen,
     /// Of the motion, observer's axes, towards where triangles are seen beside flat ones.
     axis: DVec3,
+    /// The sign of areas on the picture of what is seen from behind: fronts turn left where x, y and z of the observer's axes
+    /// are left-handed, as they are for pictures.
+    back: f32,
     target: &'a Target,
 }
 
@@ -189,7 +193,8 @@ impl<'a> Bounds<'a> {
     fn new(target: &'a Target, lens: &'a Lens, samples: [[f64; 2]; 2]) -> Self {
         let bounder = Bounder::new(lens, samples);
         let seen = Seen::new(target, &bounder, lens.projection());
-        Self { bounder, seen, axis: target.map.axis_observer(), target }
+        let back = if target.map.axes().determinant() < 0.0 { 1.0 } else { -1.0 };
+        Self { bounder, seen, axis: target.map.axis_observer(), back, target }
     }
 
     /// Adds those of a cluster that may be seen.
@@ -200,9 +205,10 @@ impl<'a> Bounds<'a> {
             return;
         };
         let beside = most_beside(&self.target.map, cluster.side_squared, nearest);
+        let back = if cluster.one_sided { self.back } else { 0.0 };
         for number in cluster.leaves.clone() {
             let places = self.corners(number).map(|v| places[v as usize]);
-            match self.bounder.of_small(places, beside, cluster.one_sided) {
+            match self.bounder.of_small(places, beside, back) {
                 Some(None) => (),
                 Some(Some(rect)) => found.add(number, rect, || self.projected(number)),
                 None => self.add(number, found),
@@ -215,7 +221,7 @@ impl<'a> Bounds<'a> {
         let Some(beside) = self.beside(number) else { return };
         if let Seen::Places(places) = &self.seen {
             let places = self.corners(number).map(|v| places[v as usize]);
-            if let Some(rect) = self.bounder.of_small(places, beside, false) {
+            if let Some(rect) = self.bounder.of_small(places, beside, 0.0) {
                 if let Some(rect) = rect {
                     found.add(number, rect, || self.projected(number));
                 }
@@ -273,7 +279,7 @@ mod tests {
     fn triangles_are_seen_where_lists_say() {
         let mut random = random(11);
         let mut number = move |reach: f64| (random() - 0.5) * reach;
-        let observer = Tetrad::new(
+        let left_handed = Tetrad::new(
             Event::origin(),
             Celerity::new(DVec3::new(0.2, -0.4, 0.1)).unwrap(),
             DVec3::new(0.3, 1.0, 0.2),
@@ -286,6 +292,7 @@ mod tests {
             let projection = [Projection::Pinhole, Projection::Fisheye, Projection::Panorama][round % 3];
             let fov = [120.0, 360.0, 360.0][round % 3];
             let lens = Lens::new(projection, fov, 161, 97).unwrap();
+            let observer = if round % 7 < 4 { left_handed } else { Tetrad::of_world(left_handed.event()) };
             let camera = crate::scene::Camera { observer, lens };
             let mut point = |reach: f64| DVec3::new(number(reach), number(reach), number(reach));
             let celerity = Celerity::new(point(1.0).normalize() * speed).unwrap();
