@@ -6,7 +6,7 @@ use super::seen::{beamed, finite};
 use super::shading::{MaterialShading, SceneLight};
 use crate::color::Coloring;
 use crate::spectrum::NearRows;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3A};
 use std::f64::consts::PI;
 
 /// What reaches [`Points`] from one light, if nothing is in the way, as surfaces without gloss reflect it.
@@ -133,14 +133,14 @@ impl Diffuse<'_> {
     /// Linear sRGB radiance, in units of the film's white, of a surface of a colour that is seen at a Doppler factor, whose
     /// logarithm matters only for spectra: of each light, what [`Arrivals::at`] has where it reaches it. `kept` is kept a light,
     /// if all of the surface has that colour.
-    #[inline]
+    #[inline(never)]
     pub fn radiance(
         &self,
         arrives: impl Fn(usize) -> Option<[f64; 2]>,
         [doppler, logarithm]: [f64; 2],
         base: [f32; 3],
         mut kept: Option<&mut [NearRows]>,
-    ) -> [f32; 3] {
+    ) -> Vec3A {
         let mut sum = DVec3::ZERO;
         for (light, of) in self.lights.iter().enumerate() {
             let Some([amount, row]) = arrives(light) else { continue };
@@ -159,7 +159,7 @@ impl Diffuse<'_> {
             };
             sum += color.as_dvec4().truncate() * amount;
         }
-        finite(sum.as_vec3().to_array())
+        Vec3A::from_array(finite(sum.as_vec3().to_array()))
     }
 }
 
@@ -250,7 +250,7 @@ mod tests {
                     let arrives = |other| (other == light).then(|| arrivals.at(i));
                     for kept in [None, Some(&mut kept[..])] {
                         let got = diffuse.radiance(arrives, [doppler, doppler.ln()], base, kept);
-                        for (got, expected) in got.iter().zip(expected) {
+                        for (got, expected) in got.to_array().into_iter().zip(expected) {
                             // A few roundings of f32, and where colours cancel those of what is cancelled.
                             let off = (got - expected).abs();
                             assert!(

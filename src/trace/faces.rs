@@ -50,6 +50,7 @@ impl<'a> Face<'a> {
     }
 
     /// The triangle, and what it looks like. `kept` are tables of all that were looked at.
+    #[inline]
     pub fn appearance(
         &mut self,
         shading: &SeenShading<'a>,
@@ -57,19 +58,23 @@ impl<'a> Face<'a> {
         kept: &mut Vec<NearRows>,
     ) -> (&Facet<'a>, &mut Appearance<'a>) {
         let facet = &self.facet;
-        let look = self.look.get_or_insert_with(|| {
-            let material = target.mesh.material_index(facet.face());
-            let plain = facet.plain_colors();
-            let glow = plain.as_ref().and_then(|colors| shading.glow(target.body, material, colors));
-            let dark = plain.is_none_or(|colors| colors.emission == [0.0; 3]);
-            let diffuse = shading.diffuse(target.body, material).filter(|_| dark);
-            let tables = kept.len();
-            if diffuse.is_some() && plain.is_some() {
-                kept.resize(tables + shading.lights(), NearRows::default());
-            }
-            Appearance { material, plain, glow, diffuse, tables }
-        });
-        (facet, look)
+        (facet, self.look.get_or_insert_with(|| Appearance::new(facet, shading, target, kept)))
+    }
+}
+
+impl<'a> Appearance<'a> {
+    #[inline(never)]
+    fn new(facet: &Facet<'a>, shading: &SeenShading<'a>, target: &Target, kept: &mut Vec<NearRows>) -> Self {
+        let material = target.mesh.material_index(facet.face());
+        let plain = facet.plain_colors();
+        let glow = plain.as_ref().and_then(|colors| shading.glow(target.body, material, colors));
+        let dark = plain.is_none_or(|colors| colors.emission == [0.0; 3]);
+        let diffuse = shading.diffuse(target.body, material).filter(|_| dark);
+        let tables = kept.len();
+        if diffuse.is_some() && plain.is_some() {
+            kept.resize(tables + shading.lights(), NearRows::default());
+        }
+        Self { material, plain, glow, diffuse, tables }
     }
 }
 

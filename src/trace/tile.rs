@@ -12,7 +12,7 @@ use crate::color::Coloring;
 use crate::film::Rows;
 use crate::light::{Arrivals, Points, SeenShading, Ways, logarithms};
 use crate::scene::{Lens, Projection, Sky};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3A};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use terrell_geodesic::{FourVector, Lorentz, Observer};
@@ -356,10 +356,19 @@ impl Tile {
             };
             let shadowed = || {
                 let point = || facet.point(at());
-                job.shading.radiance_with_shadows(target.body, material, doppler, colors, point, reaches)
+                let shading = job.shading;
+                Vec3A::from_array(shading.radiance_with_shadows(
+                    target.body,
+                    material,
+                    doppler,
+                    colors,
+                    point,
+                    reaches,
+                ))
             };
+            // In one register: put together in memory from three it would be waited for.
             let mut light = match (glow, diffuse) {
-                (Some(glow), _) => glow.radiance(doppler, logarithm),
+                (Some(glow), _) => Vec3A::from_array(glow.radiance(doppler, logarithm)),
                 (None, Some(diffuse)) => {
                     let colors = colors();
                     if colors.emission == [0.0; 3] {
@@ -389,11 +398,10 @@ impl Tile {
                 let ordinal = u64::from(self.top) * u64::from(job.lens.width()) + pixel as u64;
                 let mut random = Random::new(world.paths.seed, ordinal, sample as u64);
                 let more = world.indirect(vertex, &mut random, &mut self.paths);
-                let more = more.map(|v| if v.is_finite() { v as f32 } else { 0.0 });
-                light = [0, 1, 2].map(|c| light[c] + more[c]);
+                light += Vec3A::from_array(more.map(|v| if v.is_finite() { v as f32 } else { 0.0 }));
             }
             let color = &mut rows.color[pixel];
-            *color = [0, 1, 2].map(|c| color[c] + weight * light[c]);
+            *color = (Vec3A::from_array(*color) + weight * light).to_array();
             if sample == 0 {
                 rows.distance[pixel] = (sights.lines[0][number] / sights.nearness[number]) as f32;
                 rows.doppler[pixel] = doppler as f32;
