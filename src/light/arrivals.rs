@@ -59,15 +59,7 @@ impl<'a> SeenShading<'a> {
             return;
         }
         let mut reaching = Arrivals::default();
-        #[cfg(target_arch = "x86_64")]
-        if vectors && crate::processor::has_avx2() {
-            // SAFETY: the processor has both.
-            unsafe { reaching.reach_avx2(self.coloring(), points, ways) };
-        } else {
-            reaching.reach(self.coloring(), points, ways);
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        reaching.reach(self.coloring(), points, ways);
+        reaching.reach(self.coloring(), points, ways, vectors);
         if self.coloring() == Coloring::Spectral {
             let one = ways.dopplers[0];
             // Of a light from infinity, or a lamp that does not move.
@@ -98,16 +90,27 @@ impl Arrivals {
         [self.amounts[i], self.rows[i]]
     }
 
+    fn reach(&mut self, coloring: Coloring, points: &Points, ways: &Ways, vectors: bool) {
+        #[cfg(target_arch = "x86_64")]
+        if vectors && crate::processor::has_avx2() {
+            // SAFETY: the processor has both.
+            unsafe { self.reach_avx2(coloring, points, ways) };
+            return;
+        }
+        let _ = vectors;
+        self.reach_with(coloring, points, ways);
+    }
+
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
     fn reach_avx2(&mut self, coloring: Coloring, points: &Points, ways: &Ways) {
-        self.reach(coloring, points, ways);
+        self.reach_with(coloring, points, ways);
     }
 
     /// From one direction each, in a loop of plain arithmetic, which compilers make vectors of: E′_ν = D E_ν. Radiance goes
     /// with D³, but from an angle smaller by D².
     #[inline(always)]
-    fn reach(&mut self, coloring: Coloring, points: &Points, ways: &Ways) {
+    fn reach_with(&mut self, coloring: Coloring, points: &Points, ways: &Ways) {
         let ([_, x, y, z], [a, b, c]) = (&ways.backs, &points.normals);
         let mut amounts = [0.0; POINTS];
         for (i, amount) in amounts.iter_mut().enumerate() {
@@ -165,41 +168,19 @@ impl Diffuse<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Facet, Shading};
+    use super::super::Shading;
+    use super::super::points::tests::{facets, lit, place};
     use super::*;
-    use crate::relativity::Motion;
-    use crate::scene::{Body, Colors, Light, LightKind, Material, Scene, Surface, View, shapes};
-    use crate::spectrum::Spectrum;
-    use terrell_geodesic::{Celerity, Event, Tetrad};
+    use crate::scene::{Colors, Light, Material, Surface, shapes};
+    use terrell_geodesic::{Event, Tetrad};
 
     /// All together, with and without vectors, against one by one, whatever a pixel shows: lamps and bodies in motion and at
     /// rest, spots, light from infinity and from everywhere; with what was kept and without.
     #[test]
     fn points_are_lit_as_one_by_one() {
-        let motion = |v: f64| Motion {
-            celerity: Celerity::new(DVec3::new(v, 0.2 * v, 0.0)).unwrap(),
-            origin: Event::new(-1.0, 0.5, 4.0, 0.2),
-        };
         let mut mesh = shapes::sphere(2);
         mesh.materials = vec![Material { surface: Surface::Lit, ..Material::default() }];
-        let mut scene = Scene::new("s", vec![Body::new("ball", mesh, motion(1.0))], View::default());
-        let position = DVec3::new(1.0, -2.0, 0.5);
-        for (kind, speed) in [
-            (LightKind::Point { position }, 1.0),
-            (LightKind::Point { position }, 2.0),
-            (LightKind::Spot { position, direction: DVec3::Y, cone: [1.0, 2.5] }, -0.5),
-            (LightKind::Distant { direction: DVec3::new(0.6, 0.8, 0.0) }, 2.0),
-            (LightKind::Ambient, 0.0),
-        ] {
-            scene.lights.push(Light {
-                name: "l".into(),
-                kind,
-                color: [0.9, 1.0, 0.8],
-                spectrum: Spectrum::default(),
-                strength: 2.0,
-                motion: motion(speed),
-            });
-        }
+        let mut scene = lit(mesh, [1.0, 2.0, -0.5, 2.0, 0.0]);
         let dark = Light { strength: 0.0, ..scene.lights[1].clone() };
         scene.lights.push(dark);
         let observer = Tetrad::of_world(Event::origin());
@@ -211,22 +192,13 @@ mod tests {
             let seen = shading.seen_by(&observer);
             let diffuse = seen.diffuse(0, 0).unwrap();
             let mut kept = vec![NearRows::default(); 6];
-            let mut lit = [0; 5];
+            let mut count = [0; 5];
             points.mask = 0;
-            let facets: Vec<(Facet<'_>, DVec3)> = (0..POINTS)
-                .map(|face| {
-                    let corners = mesh.corners(face).map(|c| c + DVec3::new(0.3, 5.0, 0.1));
-                    let at = 0.2 * corners[0] + 0.5 * corners[1] + 0.3 * corners[2];
-                    (Facet::new(mesh, face, corners), at)
-                })
-                .collect();
+            let facets = facets(mesh, 0..POINTS);
             // The others' events are no numbers.
             points.events = [[f64::NAN; POINTS]; 4];
             for (i, (facet, at)) in facets.iter().enumerate().filter(|(i, _)| i % 7 != 3) {
-                points.add(i, facet.face(), 3.0 * facet.normal_seen(*at));
-                let event = facet.point(*at).event();
-                points.events[0][i] = event.t;
-                (0..3).for_each(|k| points.events[k + 1][i] = event.xyz()[k]);
+                place(&mut points, i, facet, *at, 3.0);
             }
             for (light, vectors) in (0..5).flat_map(|l| [(l, false), (l, true)]) {
                 let mut arrivals = Arrivals { amounts: [-1.0; POINTS], ..Arrivals::default() };
@@ -259,10 +231,10 @@ mod tests {
                             );
                         }
                     }
-                    lit[light] += usize::from(expected != [0.0; 3]);
+                    count[light] += usize::from(expected != [0.0; 3]);
                 }
             }
-            assert!(lit.iter().all(|n| *n > 10), "{lit:?}");
+            assert!(count.iter().all(|n| *n > 10), "{count:?}");
             // A lamp that is out gives nothing, whatever was asked before, and elsewhere.
             points.mask = !0;
             let mut arrivals = Arrivals::default();

@@ -190,41 +190,64 @@ impl NearLight {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::{Facet, Shading};
     use super::*;
     use crate::color::Coloring;
     use crate::relativity::Motion;
-    use crate::scene::{Body, Light, LightKind, Scene, View, shapes};
+    use crate::scene::{Body, Light, LightKind, Mesh, Scene, View, shapes};
     use crate::spectrum::Spectrum;
+    use std::ops::Range;
     use terrell_geodesic::{Celerity, Event, Tetrad};
 
-    /// All together, with and without vectors, against one by one; lamps and bodies in motion, spots, light from infinity.
-    #[test]
-    fn ways_are_as_one_by_one() {
+    /// A mesh in motion in the light of two lamps, a spot, light from infinity and from everywhere, at these speeds.
+    pub fn lit(mesh: Mesh, speeds: [f64; 5]) -> Scene {
         let motion = |v: f64| Motion {
             celerity: Celerity::new(DVec3::new(v, 0.2 * v, 0.0)).unwrap(),
             origin: Event::new(-1.0, 0.5, 4.0, 0.2),
         };
-        let body = Body::new("ball", shapes::sphere(3), motion(1.0));
-        let mut scene = Scene::new("s", vec![body], View::default());
+        let mut scene = Scene::new("s", vec![Body::new("ball", mesh, motion(1.0))], View::default());
         let position = DVec3::new(1.0, -2.0, 0.5);
-        for (kind, speed) in [
-            (LightKind::Point { position }, 0.0),
-            (LightKind::Point { position }, 3.0),
-            (LightKind::Spot { position, direction: DVec3::Y, cone: [1.0, 2.5] }, -0.5),
-            (LightKind::Distant { direction: DVec3::new(0.6, 0.8, 0.0) }, 2.0),
-            (LightKind::Ambient, 0.0),
-        ] {
-            scene.lights.push(Light {
-                name: "l".into(),
-                kind,
-                color: [1.0; 3],
-                spectrum: Spectrum::default(),
-                strength: 1.0,
-                motion: motion(speed),
-            });
-        }
+        let kinds = [
+            LightKind::Point { position },
+            LightKind::Point { position },
+            LightKind::Spot { position, direction: DVec3::Y, cone: [1.0, 2.5] },
+            LightKind::Distant { direction: DVec3::new(0.6, 0.8, 0.0) },
+            LightKind::Ambient,
+        ];
+        scene.lights.extend(kinds.into_iter().zip(speeds).map(|(kind, speed)| Light {
+            name: "l".into(),
+            kind,
+            color: [0.9, 1.0, 0.8],
+            spectrum: Spectrum::default(),
+            strength: 2.0,
+            motion: motion(speed),
+        }));
+        scene
+    }
+
+    /// Triangles from where they are seen, and a point of each.
+    pub fn facets(mesh: &Mesh, of: Range<usize>) -> Vec<(Facet<'_>, DVec3)> {
+        of.map(|face| {
+            let corners = mesh.corners(face).map(|c| c + DVec3::new(0.3, 5.0, 0.1));
+            let at = 0.2 * corners[0] + 0.5 * corners[1] + 0.3 * corners[2];
+            (Facet::new(mesh, face, corners), at)
+        })
+        .collect()
+    }
+
+    /// Adds a point of a triangle, its normal so many times as long.
+    pub fn place(points: &mut Points, i: usize, facet: &Facet<'_>, at: DVec3, length: f64) {
+        points.add(i, facet.face(), length * facet.normal_seen(at));
+        let event = facet.point(at).event();
+        points.events[0][i] = event.t;
+        (0..3).for_each(|k| points.events[k + 1][i] = event.xyz()[k]);
+    }
+
+    /// All together, with and without vectors, against one by one; lamps and bodies in motion, spots, light from infinity.
+    #[test]
+    fn ways_are_as_one_by_one() {
+        let scene = lit(shapes::sphere(3), [0.0, 3.0, -0.5, 2.0, 0.0]);
         let observer = Tetrad::of_world(Event::origin());
         let shading = Shading::new(&scene, [&observer], Coloring::Geometry).unwrap();
         let seen = shading.seen_by(&observer);
@@ -233,18 +256,9 @@ mod tests {
         let mut all = [0u32; 5];
         for first in (0..mesh.triangles.len()).step_by(POINTS) {
             points.mask = 0;
-            let facets: Vec<(Facet<'_>, DVec3)> = (first..(first + POINTS).min(mesh.triangles.len()))
-                .map(|face| {
-                    let corners = mesh.corners(face).map(|c| c + DVec3::new(0.3, 5.0, 0.1));
-                    let at = 0.2 * corners[0] + 0.5 * corners[1] + 0.3 * corners[2];
-                    (Facet::new(mesh, face, corners), at)
-                })
-                .collect();
+            let facets = facets(mesh, first..(first + POINTS).min(mesh.triangles.len()));
             for (i, (facet, at)) in facets.iter().enumerate() {
-                points.add(i, facet.face(), facet.normal_seen(*at));
-                let event = facet.point(*at).event();
-                points.events[0][i] = event.t;
-                (0..3).for_each(|k| points.events[k + 1][i] = event.xyz()[k]);
+                place(&mut points, i, facet, *at, 1.0);
             }
             for (light, vectors) in (0..5).flat_map(|l| [(l, false), (l, true)]) {
                 seen.ways(0, light, &points, &mut ways, vectors);

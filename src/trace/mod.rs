@@ -215,18 +215,7 @@ impl Tracer {
         let world = world.as_ref();
         let lists = self.lists(&stage, lens, samples);
         let lists = lists.as_deref();
-        let job = Job {
-            stage: &stage,
-            lists,
-            lens,
-            shading,
-            sky,
-            samples,
-            vectors,
-            shaded: true,
-            to_lights,
-            world,
-        };
+        let job = Job { stage: &stage, lists, lens, shading, sky, samples, vectors, to_lights, world };
         let all = samples.len();
         let passes = if follows { PASSES.min(all).max(1) } else { 1 };
         let mut traced = Traced::default();
@@ -268,18 +257,7 @@ impl Tracer {
         let lists = self.lists(&stage, lens, samples);
         let lists = lists.as_deref();
         let (sky, world) = (None, None);
-        let job = Job {
-            stage: &stage,
-            lists,
-            lens,
-            shading,
-            sky,
-            samples,
-            vectors,
-            shaded: false,
-            to_lights,
-            world,
-        };
+        let job = Job { stage: &stage, lists, lens, shading, sky, samples, vectors, to_lights, world };
         (0..camera.lens.height().div_ceil(SIDE))
             .into_par_iter()
             .map_init(Box::<Tile>::default, |tile, band| tile.cast_band(&job, band * SIDE))

@@ -114,8 +114,6 @@ pub(super) struct Job<'a> {
     pub samples: &'a [[f64; 2]],
     /// Whether AVX2 may be used.
     pub vectors: bool,
-    /// Whether more than rays matters.
-    pub shaded: bool,
     /// Rays to each light, and how many of them are blocked.
     pub to_lights: &'a [[AtomicU64; 2]],
     /// Where light of surfaces on each other is followed.
@@ -128,20 +126,23 @@ impl Tile {
         if pass.start == 0 {
             rows.clear();
         }
-        self.follow_band(job, top, pass, |tile, faces, sample| tile.develop(job, faces, sample, &mut rows))
+        self.follow_band(job, top, pass, true, |tile, faces, sample| {
+            tile.develop(job, faces, sample, &mut rows)
+        })
     }
 
     /// Only follows the band's rays.
     pub fn cast_band(&mut self, job: &Job<'_>, top: u32) -> Count {
-        self.follow_band(job, top, 0..job.samples.len(), |_, _, _| ())
+        self.follow_band(job, top, 0..job.samples.len(), false, |_, _, _| ())
     }
 
-    /// Follows the rays of a band, tile by tile and sample by sample.
+    /// Follows the rays of a band, tile by tile and sample by sample; `shaded` if more than rays matters.
     fn follow_band<'a>(
         &mut self,
         job: &Job<'a>,
         top: u32,
         pass: Range<usize>,
+        shaded: bool,
         mut done: impl FnMut(&mut Self, &mut Faces<'a>, usize),
     ) -> Count {
         self.count = Count::default();
@@ -177,7 +178,7 @@ impl Tile {
                 self.sights.aim(job.lens, [left, top], size, job.samples[number]);
                 self.count.primary += self.sights.count as u64;
                 self.find(job, &mut faces);
-                self.light(job, &faces);
+                self.light(job, &faces, shaded);
                 done(self, &mut faces, number);
             }
         }
@@ -262,7 +263,7 @@ impl Tile {
     }
 
     /// Which lights reach what is seen, a bit a line of sight for each, and how strong they are there.
-    fn light(&mut self, job: &Job<'_>, faces: &Faces<'_>) {
+    fn light(&mut self, job: &Job<'_>, faces: &Faces<'_>, shaded: bool) {
         let lights = job.shading.lights();
         self.lit.clear();
         self.lit.resize(lights, !0);
@@ -281,7 +282,7 @@ impl Tile {
             for light in 0..lights {
                 let Self { points, ways, bundle, .. } = self;
                 job.shading.ways(target.body, light, points, ways, job.vectors);
-                if job.shaded {
+                if shaded {
                     let arrivals = &mut self.arrivals[light];
                     job.shading.arrivals((target.body, light), points, ways, arrivals, job.vectors);
                 }
