@@ -5,7 +5,7 @@ mod common;
 #[path = "common/scene_json.rs"]
 mod scene_json;
 
-use common::{cases, reference, vec3};
+use common::{Random, cases, reference, vec3};
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use serde_json::Value;
 use terrell::color::Coloring;
@@ -491,4 +491,99 @@ fn noise_is_what_pictures_differ_by() {
     assert!((told / differ - 1.0).abs() < 0.2, "{told} {differ}");
     // Half as much, but for a few bright pixels.
     assert!(finer < told / 1.4, "{told} {finer}");
+}
+
+/// What closed meshes keep light from is the same if a hole is torn into them where nobody looks, which takes away all that
+/// may be left out because they are closed.
+#[test]
+fn closed_meshes_cast_the_shadows_of_open_ones() {
+    let mut random = Random(11);
+    // Tetrahedra through each other, turned inside out or not, some with normals that lean far over.
+    let mut soup = |count: u32, smooth: bool| {
+        let mut mesh = Mesh::default();
+        for i in 0..count {
+            let middle = random.point(1.0);
+            let corners = [0; 4].map(|_| middle + random.point(0.5));
+            let mut triangles = vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+            triangles.iter_mut().for_each(|t| t.rotate_left(i as usize % 3));
+            let mut solid = Mesh::new(&corners, triangles);
+            if smooth {
+                let outward = corners.map(|c| (c - corners.iter().sum::<DVec3>() / 4.0).normalize());
+                solid.normals = outward.map(|n| n.as_vec3().to_array()).to_vec();
+            }
+            mesh.append(solid);
+        }
+        of(mesh, material([0.8; 3], [0.0; 3], Gloss::default()))
+    };
+    let [first, second] = [soup(60, true), soup(40, false)];
+    let middle = |mesh: &Mesh, of: u32| (0..4).map(|i| mesh.vertex(4 * of + i)).sum::<DVec3>() / 4.0;
+    let solids = [false, true].map(|inside_out| {
+        let is_so = |of: &u32| {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|i| first.vertex(4 * of + i));
+            ((b - a).cross(c - a).dot(d - a) < 0.0) == inside_out
+        };
+        middle(&first, (1..60).find(is_so).unwrap())
+    });
+    let torn = |mesh: &Mesh| {
+        let middle = middle(mesh, 0);
+        let mut crumb =
+            Mesh::new(&[DVec3::ZERO, DVec3::X, DVec3::Y].map(|c| middle + 1e-6 * c), vec![[0, 1, 2]]);
+        if !mesh.normals.is_empty() {
+            crumb.normals = vec![[0.0, 0.0, 1.0]; 3];
+        }
+        let mut torn = mesh.clone();
+        torn.append(crumb);
+        torn
+    };
+    let lamp = |name: &str, kind, motion| Light {
+        name: name.into(),
+        kind,
+        color: [1.0; 3],
+        spectrum: Spectrum::default(),
+        strength: 20.0,
+        motion,
+    };
+    let mut stopped = [0, 0];
+    for beta in [0.0, 0.6, 0.95] {
+        let motions = [
+            moving(DVec3::X * beta, Event::new(-5.0, 0.0, 0.0, 0.0)),
+            moving(DVec3::new(0.0, 0.1, -0.3), Event::new(-5.0, 0.7, 1.8, 0.3)),
+        ];
+        // Outside of all, among them, and within such of both kinds, at rest.
+        let (front, above) = (DVec3::new(0.0, -5.0, 1.0), DVec3::new(1.0, -3.5, 3.0));
+        let among = DVec3::new(-0.6, -0.2, 0.4);
+        let places = [(above, front), (among, front), (above, among)];
+        let within = solids.into_iter().flat_map(|within| [(within, front), (above, within)]);
+        for (at, eye) in places.into_iter().chain(within) {
+            let near = LightKind::Point { position: at };
+            let lights = vec![
+                lamp("still", near, Motion::at_rest(DVec3::ZERO)),
+                lamp("quick", near, moving(DVec3::Z * 0.7, Event::new(-5.0, 0.0, 0.0, 0.0))),
+                lamp("far", LightKind::Distant { direction: DVec3::new(0.3, 0.8, -0.4) }, motions[0]),
+            ];
+            let seen = |meshes: [Mesh; 2]| {
+                let bodies = meshes.into_iter().zip(motions).zip(["first", "second"]);
+                let bodies = bodies.map(|((mesh, motion), name)| Body::new(name, mesh, motion)).collect();
+                let view = View {
+                    event: Event::at(0.0, eye),
+                    aim: Aim::LookAt(DVec3::splat(0.3)),
+                    size: [160, 120],
+                    ..View::default()
+                };
+                let mut scene = Scene::new("soup", bodies, view);
+                scene.lights.clone_from(&lights);
+                traced(&scene, Coloring::Geometry, 1, 0)
+            };
+            let (film, report) = seen([first.clone(), second.clone()]);
+            let (of_torn, report_of_torn) = seen([torn(&first), torn(&second)]);
+            let counts = [report, report_of_torn].map(|report| report.rays.unwrap().to_lights);
+            assert_eq!(counts[0], counts[1], "{beta} {at} {eye}");
+            assert!(film == of_torn, "{beta} {at} {eye}");
+            for [asked, blocked] in &counts[0] {
+                stopped = [stopped[0] + asked, stopped[1] + blocked];
+            }
+        }
+    }
+    let [asked, blocked] = stopped;
+    assert!(blocked > 10_000 && asked > blocked + 10_000, "{asked} {blocked}");
 }

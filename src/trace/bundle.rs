@@ -3,11 +3,12 @@
 use super::lanes::Lanes;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::x86;
+use super::origin::Origin;
 use super::ray::Ray;
 use super::stage::{Stage, Target, Way};
 use super::tree::{Branch, Inside, Leaf, Tree, WIDE};
 use crate::light::{POINTS, Points, Ways, component, vector};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// Rays that are tested together.
 const GROUP: usize = 8;
@@ -19,6 +20,11 @@ const GROUPS: usize = POINTS / GROUP;
 ///
 /// Boxes are tested by the ranges of all rays' origins and directions first, then by groups of rays up to the first that
 /// may enter; triangles by groups, in f32, by bounds of its rounding. What that leaves is tested in f64.
+///
+/// Who is outside of something closed, and sees a point of anything, is joined to it by a line that goes into the closed thing
+/// as often as out of it; so is the point to a light that is outside, too. Where triangles are closed, and eye and light outside
+/// of the boxes around all of them, a ray therefore hits none unless it hits one from the front, and the others need not be
+/// looked at: what is lit, and all that is near it, shows the light its front.
 #[derive(Default)]
 pub(super) struct Bundle {
     /// What is in boxes that are still to be looked at, and the first group that may enter them.
@@ -39,6 +45,8 @@ struct InLanes {
     far: f32,
     /// What origins are off by, and boxes are larger by.
     slack: f32,
+    /// Along which directions they go, where only fronts need be looked at.
+    towards: Option<Towards>,
     axes: [Axis; 3],
 }
 
@@ -49,10 +57,20 @@ struct Axis {
     backward: bool,
     /// Least and greatest.
     origin: [f32; 2],
+    /// The middle of the least and the greatest, unturned.
+    direction: f32,
     /// Least and greatest 1 over the direction; none if rays go both ways.
     inverse: Option<[f32; 2]>,
     /// All rays lie between.
     swept: [f32; 2],
+}
+
+/// Directions up to an angle from an axis.
+#[derive(Clone, Copy)]
+struct Towards {
+    axis: [f32; 3],
+    cosine: f32,
+    sine: f32,
 }
 
 /// The rays of a bundle before they are in lanes.
@@ -66,6 +84,9 @@ struct Rays<'a> {
     to: usize,
 }
 
+/// Rays that go farther apart go every way.
+const LEAST_COSINE: f32 = 0.5;
+
 /// What f32 leaves over, relative, in a few operations.
 const ROUNDING: f32 = 1e-6;
 
@@ -73,7 +94,8 @@ impl Default for InLanes {
     fn default() -> Self {
         let three = [[0.0; POINTS]; 3];
         let (length, axes) = ([0.0; POINTS], Default::default());
-        Self { origin: three, direction: three, inverse: three, length, far: 0.0, slack: 0.0, axes }
+        let (far, slack) = (0.0, 0.0);
+        Self { origin: three, direction: three, inverse: three, length, far, slack, towards: None, axes }
     }
 }
 
@@ -91,6 +113,25 @@ impl<'a> Rays<'a> {
             self.to,
             self.target(),
         )
+    }
+
+    /// Which of some rays begin into the surface they come from, as they do where interpolated normals face a light and the
+    /// triangle itself does not.
+    fn entering_own(&self, mut some: u64) -> u64 {
+        let mesh = &self.target().mesh;
+        if self.from != self.to || mesh.normals.is_empty() {
+            return 0;
+        }
+        let mut into = 0;
+        while some != 0 {
+            let i = some.trailing_zeros() as usize;
+            some &= some - 1;
+            let [a, b, c] = mesh.corners(self.points.faces[i] as usize);
+            let normal = (b - a).cross(c - a);
+            let [sight, back] = [self.points.event(i), vector(&self.ways.backs, i)].map(|v| v.xyz());
+            into |= u64::from((normal.dot(sight) > 0.0) == (normal.dot(back) > 0.0)) << i;
+        }
+        into
     }
 }
 
@@ -150,12 +191,20 @@ impl Bundle {
             return (0..POINTS).map(|i| u64::from(blocked(i)) << i).sum();
         }
         let mut open = all;
+        let fronts = self.lanes.towards.map_or(&[][..], |_| tree.fronts());
+        if !fronts.is_empty() {
+            open &= !rays.entering_own(open);
+        }
         let mut stack = std::mem::take(&mut self.stack);
         stack.clear();
         stack.extend(tree.root().map(|inside| (inside, 0)));
         while let Some((inside, first)) = stack.pop() {
             let Ok(branch) = tree.look(inside) else { continue };
-            let may_enter = self.lanes.may_enter(branch);
+            let mut may_enter = self.lanes.may_enter(branch);
+            if let (Some(towards), Some(fronts)) = (&self.lanes.towards, fronts.get(inside.number())) {
+                let behind = fronts.are_behind(towards.axis, towards.cosine, towards.sine);
+                may_enter = std::array::from_fn(|i| may_enter[i] & !behind[i]);
+            }
             for i in (0..WIDE).filter(|i| may_enter[*i]) {
                 let mut groups = first..GROUPS;
                 // SAFETY: as this function.
@@ -291,6 +340,7 @@ impl InLanes {
         self.slack = most.iter().fold(0.0, |a, b| if *b > a { *b } else { a }) as f32 * ROUNDING;
         for k in 0..3 {
             let (origin, direction) = (range(&self.origin[k]), range(&self.direction[k]));
+            let middle = 0.5 * direction[0] + 0.5 * direction[1];
             let backward = direction[1] < 0.0;
             let turned = |[low, high]: [f32; 2]| if backward { [-high, -low] } else { [low, high] };
             let (origin, direction) = (turned(origin), turned(direction));
@@ -298,6 +348,7 @@ impl InLanes {
             self.axes[k] = Axis {
                 backward,
                 origin,
+                direction: middle,
                 inverse: (direction[0] > 0.0).then_some(inverse),
                 swept: [
                     origin[0] + (direction[0] * self.far).min(0.0) * (1.0 + ROUNDING),
@@ -305,7 +356,48 @@ impl InLanes {
                 ],
             };
         }
+        self.towards = self.only_fronts(rays).then(|| self.towards()).flatten();
         true
+    }
+
+    /// Whether rays hit nothing that they do not hit from the front.
+    fn only_fronts(&self, rays: &Rays<'_>) -> bool {
+        let Target { tree, map, .. } = rays.target();
+        if tree.fronts().is_empty() {
+            return false;
+        }
+        let (eye, off) = Origin::of_observer(map).place(tree);
+        let off = off as f32 + self.slack;
+        // Of each component the least and the greatest.
+        let outside = |ranges: [[f32; 2]; 3]| {
+            let about = |c: f32, way: f32| c + way * (ROUNDING * c.abs() + off);
+            tree.is_outside(ranges.map(|[low, _]| about(low, -1.0)), ranges.map(|[_, high]| about(high, 1.0)))
+        };
+        let end = |k: usize| {
+            let mut ends = [0.0; POINTS];
+            for (i, end) in ends.iter_mut().enumerate() {
+                *end = self.origin[k][i] + self.direction[k][i] * self.far;
+            }
+            range(&ends)
+        };
+        // What comes from infinity comes from outside.
+        outside(eye.as_vec3().to_array().map(|c| [c; 2]))
+            && (self.far == f32::INFINITY || outside([end(0), end(1), end(2)]))
+    }
+
+    /// Which way they all go, if that is one way.
+    #[inline(always)]
+    fn towards(&self) -> Option<Towards> {
+        let [x, y, z] = &self.direction;
+        let middle = Vec3::from_array(self.axes.map(|axis| axis.direction)).normalize_or_zero();
+        let mut cosines = [0.0; POINTS];
+        for (i, cosine) in cosines.iter_mut().enumerate() {
+            // A little less than it is.
+            *cosine = (x[i] * middle.x + y[i] * middle.y + z[i] * middle.z) / self.length[i] - ROUNDING;
+        }
+        let [cosine, _] = range(&cosines);
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        (cosine > LEAST_COSINE).then_some(Towards { axis: middle.to_array(), cosine, sine })
     }
 
     /// Whether any ray might enter boxes, by their ranges.
@@ -388,6 +480,11 @@ impl InLanes {
                 let det = back.choose(zero.sub(det), det);
                 let inside = u.add(off).at_least(zero).and(v.add(off).at_least(zero));
                 let inside = inside.and(det.add(off).add(off).at_least(u.add(v)));
+                let inside = if self.towards.is_some() {
+                    inside.without(back.and(det.above(off.add(off))))
+                } else {
+                    inside
+                };
                 bits |= inside.bits() << i;
             }
         }

@@ -21,6 +21,7 @@ mod directed;
 mod edges;
 mod emitters;
 mod faces;
+mod fronts;
 mod lanes;
 mod lists;
 mod origin;

@@ -1,11 +1,12 @@
 use super::cluster::Cluster;
+use super::fronts::Fronts;
 use crate::scene::Mesh;
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 /// A bounding volume hierarchy of a mesh at rest: whatever moves, it is built once.
@@ -23,6 +24,8 @@ pub(super) struct Tree {
     mesh: Option<Arc<Mesh>>,
     /// Of the leaves, where these are listed.
     clusters: Vec<Cluster>,
+    /// A branch each, made when they are first asked for.
+    fronts: OnceLock<Vec<Fronts>>,
     /// The mesh's middle.
     pub centre: DVec3,
     /// 1 over its greatest side.
@@ -208,8 +211,23 @@ impl Tree {
         let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
         let vertices = (0..mesh.vertex_count() as u32).into_par_iter().with_min_len(1 << 12);
         let radius = vertices.map(|v| mesh.vertex(v).distance(centre)).reduce(|| 0.0, f64::max);
-        let (branches, leaves, vertices, clusters) = Default::default();
-        Self { branches, leaves, vertices, mesh: None, clusters, centre, scale, radius }
+        let (branches, leaves, vertices, clusters, fronts) = Default::default();
+        Self { branches, leaves, vertices, mesh: None, clusters, fronts, centre, scale, radius }
+    }
+
+    pub fn branches(&self) -> &[Branch] {
+        &self.branches
+    }
+
+    /// Which way the triangles of every branch face; none if they are not closed.
+    pub fn fronts(&self) -> &[Fronts] {
+        self.fronts.get_or_init(|| Fronts::of(self))
+    }
+
+    /// Whether what lies between two corners, in the tree's units, is outside of the box around all.
+    pub fn is_outside(&self, low: [f32; 3], high: [f32; 3]) -> bool {
+        let Some(Branch { min, max, .. }) = self.branches.first() else { return true };
+        (0..3).any(|k| min[k].iter().all(|min| high[k] < *min) || max[k].iter().all(|max| low[k] > *max))
     }
 
     /// All of it, if there is anything.
@@ -263,6 +281,14 @@ impl Tree {
                 ask(self.leaves.as_ptr().wrapping_add(first).cast());
             }
         }
+    }
+}
+
+impl Inside {
+    /// Of the branch, or of the first triangle.
+    #[inline(always)]
+    pub fn number(self) -> usize {
+        self.first as usize
     }
 }
 
