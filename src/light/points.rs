@@ -78,6 +78,18 @@ pub(crate) fn vector(of: &Vectors, i: usize) -> FourVector<Rest> {
     FourVector::new(of[0][i], of[1][i], of[2][i], of[3][i])
 }
 
+/// A bit for each that holds.
+#[inline(always)]
+pub(crate) fn bits(all: &[bool; POINTS]) -> u64 {
+    let mut bits = 0;
+    for (eight, eighth) in all.as_chunks::<8>().0.iter().zip(0..) {
+        // Bytes of 1 and 0, the first the lowest: each is brought into the highest byte, to a place of its own.
+        let bytes = u64::from_le_bytes(eight.map(u8::from));
+        bits |= (bytes.wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * eighth);
+    }
+    bits
+}
+
 /// A component of what a map, by that row of it, makes of vectors.
 #[inline(always)]
 pub(crate) fn component(row: [f64; 4], of: &Vectors) -> [f64; POINTS] {
@@ -127,7 +139,7 @@ impl Ways {
         for (i, facing) in facing.iter_mut().enumerate() {
             *facing = possible[i] & (a[i] * x[i] + b[i] * y[i] + c[i] * z[i] > 0.0);
         }
-        self.open = points.mask & facing.iter().rev().fold(0, |bits, is| bits << 1 | u64::from(*is));
+        self.open = points.mask & bits(&facing);
     }
 }
 

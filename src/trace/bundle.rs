@@ -5,9 +5,9 @@ use super::lanes::Lanes;
 use super::lanes::x86;
 use super::origin::Origin;
 use super::ray::Ray;
-use super::stage::{Stage, Target, Way};
+use super::stage::{CLOSE, Stage, Target, Way};
 use super::tree::{Branch, Inside, Leaf, Tree, WIDE};
-use crate::light::{POINTS, Points, Ways, component, vector};
+use crate::light::{POINTS, Points, Ways, bits, component, vector};
 use glam::{DVec3, Vec3};
 
 /// Rays that are tested together.
@@ -43,8 +43,12 @@ struct InLanes {
     length: [f32; POINTS],
     /// Where they end.
     far: f32,
+    /// They end no nearer.
+    near_far: f32,
     /// What origins are off by, and boxes are larger by.
     slack: f32,
+    /// How near to where a ray begins it hits nothing, at most.
+    close: f32,
     /// Along which directions they go, where only fronts need be looked at.
     towards: Option<Towards>,
     axes: [Axis; 3],
@@ -94,8 +98,19 @@ impl Default for InLanes {
     fn default() -> Self {
         let three = [[0.0; POINTS]; 3];
         let (length, axes) = ([0.0; POINTS], Default::default());
-        let (far, slack) = (0.0, 0.0);
-        Self { origin: three, direction: three, inverse: three, length, far, slack, towards: None, axes }
+        let (far, near_far, slack, close) = (0.0, 0.0, 0.0, 0.0);
+        Self {
+            origin: three,
+            direction: three,
+            inverse: three,
+            length,
+            far,
+            near_far,
+            slack,
+            close,
+            towards: None,
+            axes,
+        }
     }
 }
 
@@ -234,12 +249,17 @@ impl Bundle {
                             continue;
                         }
                         // SAFETY: as this function.
-                        let mut possible = mask & unsafe { self.lanes.may_hit::<L>(&triangle, group) };
+                        let hit = unsafe { self.lanes.may_hit::<L>(&triangle, group) };
+                        let [mut possible, certain] = hit.map(|hit| hit & mask);
                         while possible != 0 {
-                            let i = GROUP * group + possible.trailing_zeros() as usize;
+                            let (bit, i) = (
+                                possible & possible.wrapping_neg(),
+                                GROUP * group + possible.trailing_zeros() as usize,
+                            );
                             possible &= possible - 1;
                             if rays.points.faces[i] != leaf.face || rays.from != rays.to {
-                                open &= !(u64::from(rays.ray(i).hits(&leaf)) << i);
+                                let hit = certain & bit != 0 || rays.ray(i).hits(&leaf);
+                                open &= !(u64::from(hit) << i);
                             }
                         }
                     }
@@ -293,37 +313,43 @@ impl InLanes {
         let centre = target.map.offset_rest(target.tree.centre);
         let scale = target.tree.scale;
         let map = (target.motion != receiver.motion).then(|| stage.between(to, from));
-        // Loops of plain arithmetic, which compilers make vectors of. NaN, too, is beyond what f32 holds.
-        let mut within = [true; POINTS];
-        let (mut most, mut longest) = ([0f64; POINTS], [0f64; POINTS]);
+        // Loops of plain arithmetic, which compilers make vectors of.
+        let (mut most, mut longest, mut shortest) = ([0f64; POINTS], [0f64; POINTS], [1f64; POINTS]);
+        // Of all there is, so that it is no number where anything is none.
+        let mut sum = [0f64; POINTS];
         for k in 0..3 {
             // The same frame up to where its origin is, or another.
-            let (at, back) = match &map {
-                None => (points.events[k + 1], ways.backs[k + 1]),
+            let [boosted_at, boosted_back];
+            let [at, back] = match &map {
+                None => [&points.events[k + 1], &ways.backs[k + 1]],
                 Some(map) => {
                     let row = map.rows()[k + 1];
-                    (component(row, &points.events), component(row, &ways.backs))
+                    [boosted_at, boosted_back] =
+                        [component(row, &points.events), component(row, &ways.backs)];
+                    [&boosted_at, &boosted_back]
                 }
             };
             for i in 0..POINTS {
                 let (place, along) = ((at[i] - centre[k]) * scale, back[i] * scale);
                 let (there, size) = (place.abs(), along.abs());
-                // A component that is 0 has an infinite inverse, which is right.
-                within[i] &= (there < 1e15) & (size < 1e15) & ((size == 0.0) | (size > 1e-30));
+                sum[i] += there + size;
                 most[i] = if there > most[i] { there } else { most[i] };
                 longest[i] = if size > longest[i] { size } else { longest[i] };
+                // A component that is 0 has an infinite inverse, which is right.
+                let size = if size > 0.0 { size } else { 1.0 };
+                shortest[i] = if size < shortest[i] { size } else { shortest[i] };
                 self.origin[k][i] = place as f32;
                 self.direction[k][i] = along as f32;
                 self.inverse[k][i] = 1.0 / along as f32;
             }
         }
+        let mut within = [false; POINTS];
         for i in 0..POINTS {
-            within[i] &= longest[i] > 1e-15;
+            within[i] = (sum[i] < 1e15) & (longest[i] > 1e-15) & (shortest[i] > 1e-30);
             let [x, y, z] = &self.direction;
             self.length[i] = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt() * (1.0 + 4.0 * ROUNDING);
         }
-        let bits = within.iter().rev().fold(0, |bits, is| bits << 1 | u64::from(*is));
-        if bits & open != open {
+        if bits(&within) & open != open {
             return false;
         }
         // Those that are not open do what one does that is.
@@ -337,7 +363,11 @@ impl InLanes {
             most[i] = most[one];
         }
         self.far = ways.far as f32 * (1.0 + ROUNDING);
-        self.slack = most.iter().fold(0.0, |a, b| if *b > a { *b } else { a }) as f32 * ROUNDING;
+        self.near_far = ways.far as f32 * (1.0 - 4.0 * ROUNDING);
+        let most = most.iter().fold(0.0, |a, b| if *b > a { *b } else { a });
+        self.slack = most as f32 * ROUNDING;
+        // As the rays themselves have it, by a bound of how far their origins are from the observer.
+        self.close = (CLOSE * (2.0 * most + centre.length() * scale + 1.0)) as f32;
         for k in 0..3 {
             let (origin, direction) = (range(&self.origin[k]), range(&self.direction[k]));
             let middle = 0.5 * direction[0] + 0.5 * direction[1];
@@ -450,10 +480,11 @@ impl InLanes {
         bits
     }
 
-    /// Which rays of a group may hit a triangle: by o + t d = a + u e₁ + v e₂, with bounds of what f32 may be off by.
+    /// Which rays of a group may hit a triangle, and which certainly do: by o + t d = a + u e₁ + v e₂, with bounds of what f32
+    /// may be off by.
     #[inline(always)]
-    unsafe fn may_hit<L: Lanes>(&self, triangle: &Triangle, group: usize) -> u32 {
-        let mut bits = 0;
+    unsafe fn may_hit<L: Lanes>(&self, triangle: &Triangle, group: usize) -> [u32; 2] {
+        let [mut possible, mut certain] = [0; 2];
         for i in (0..GROUP).step_by(L::COUNT) {
             let lane = GROUP * group + i;
             // SAFETY: as this function.
@@ -467,8 +498,8 @@ impl InLanes {
                 // What a corner from the origin is off by, and its products with the direction and an edge.
                 let far =
                     r[0].max(zero.sub(r[0])).add(r[1].max(zero.sub(r[1]))).add(r[2].max(zero.sub(r[2])));
-                let off = far.mul_add(L::splat(ROUNDING), L::splat(self.slack + ROUNDING));
-                let off = off.mul(L::load(&self.length[lane..])).mul(L::splat(4.0 * size));
+                let off_by = far.mul_add(L::splat(ROUNDING), L::splat(self.slack + ROUNDING));
+                let off = off_by.mul(L::load(&self.length[lane..])).mul(L::splat(4.0 * size));
                 let c = [
                     r[1].mul(d[2]).sub(r[2].mul(d[1])),
                     r[2].mul(d[0]).sub(r[0].mul(d[2])),
@@ -476,8 +507,8 @@ impl InLanes {
                 ];
                 let (u, v, det) = (dot(e2, c), zero.sub(dot(e1, c)), zero.sub(dot(d, normal)));
                 let back = zero.above(det);
-                let (u, v) = (back.choose(zero.sub(u), u), back.choose(zero.sub(v), v));
-                let det = back.choose(zero.sub(det), det);
+                let turned = |value: L| back.choose(zero.sub(value), value);
+                let (u, v, det) = (turned(u), turned(v), turned(det));
                 let inside = u.add(off).at_least(zero).and(v.add(off).at_least(zero));
                 let inside = inside.and(det.add(off).add(off).at_least(u.add(v)));
                 let inside = if self.towards.is_some() {
@@ -485,10 +516,19 @@ impl InLanes {
                 } else {
                     inside
                 };
-                bits |= inside.bits() << i;
+                if inside.bits() == 0 {
+                    continue;
+                }
+                possible |= inside.bits() << i;
+                // t det, which is off by this.
+                let t = turned(dot(r, normal));
+                let off_t = off_by.mul_add(L::splat(4.0), L::splat(self.close)).mul(L::splat(size * size));
+                let on = t.above(off_t).and(det.sub(off).mul(L::splat(self.near_far)).above(t.add(off_t)));
+                let inside = u.above(off).and(v.above(off)).and(det.sub(off).sub(off).above(u.add(v)));
+                certain |= inside.and(on).bits() << i;
             }
         }
-        bits
+        [possible, possible & certain]
     }
 }
 

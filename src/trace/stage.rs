@@ -207,4 +207,4 @@ pub(super) struct Way {
 
 /// Nearer to where a ray begins, of the distance from the observer and the size of what may be hit, it is the surface
 /// itself: its points are good to a few 10⁻¹⁶ of either, by one over the sine at which it is seen.
-const CLOSE: f64 = 1e-11;
+pub(super) const CLOSE: f64 = 1e-11;
