@@ -6,7 +6,7 @@ use super::seen::{beamed, finite};
 use super::shading::{MaterialShading, SceneLight};
 use crate::color::Coloring;
 use crate::spectrum::NearRows;
-use glam::{DVec3, Vec3, Vec3A};
+use glam::{Vec3, Vec3A, Vec4};
 use std::f64::consts::PI;
 
 /// What reaches [`Points`] from one light, if nothing is in the way, as surfaces without gloss reflect it.
@@ -58,20 +58,17 @@ impl<'a> SeenShading<'a> {
             }
             return;
         }
-        let mut reaching = Arrivals::default();
-        reaching.reach(self.coloring(), points, ways, vectors);
+        let mut rows = [0.0; POINTS];
         if self.coloring() == Coloring::Spectral {
             let one = ways.dopplers[0];
             // Of a light from infinity, or a lamp that does not move.
             if ways.dopplers.iter().all(|doppler| *doppler == one) {
-                reaching.rows.fill(ln(one));
+                rows.fill(ln(one));
             } else {
-                logarithms(&ways.dopplers, &mut reaching.rows, vectors);
+                logarithms(&ways.dopplers, &mut rows, vectors);
             }
         }
-        for i in (0..POINTS).filter(|i| points.mask >> i & 1 == 1) {
-            (arrivals.amounts[i], arrivals.rows[i]) = (reaching.amounts[i], reaching.rows[i]);
-        }
+        arrivals.reach(self.coloring(), points, ways, &rows, vectors);
     }
 
     /// Of a material that reflects without gloss, all there is to know.
@@ -90,27 +87,34 @@ impl Arrivals {
         [self.amounts[i], self.rows[i]]
     }
 
-    fn reach(&mut self, coloring: Coloring, points: &Points, ways: &Ways, vectors: bool) {
+    fn reach(
+        &mut self,
+        coloring: Coloring,
+        points: &Points,
+        ways: &Ways,
+        rows: &[f64; POINTS],
+        vectors: bool,
+    ) {
         #[cfg(target_arch = "x86_64")]
         if vectors && crate::processor::has_avx2() {
             // SAFETY: the processor has both.
-            unsafe { self.reach_avx2(coloring, points, ways) };
+            unsafe { self.reach_avx2(coloring, points, ways, rows) };
             return;
         }
         let _ = vectors;
-        self.reach_with(coloring, points, ways);
+        self.reach_with(coloring, points, ways, rows);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn reach_avx2(&mut self, coloring: Coloring, points: &Points, ways: &Ways) {
-        self.reach_with(coloring, points, ways);
+    fn reach_avx2(&mut self, coloring: Coloring, points: &Points, ways: &Ways, rows: &[f64; POINTS]) {
+        self.reach_with(coloring, points, ways, rows);
     }
 
     /// From one direction each, in a loop of plain arithmetic, which compilers make vectors of: E′_ν = D E_ν. Radiance goes
     /// with D³, but from an angle smaller by D².
     #[inline(always)]
-    fn reach_with(&mut self, coloring: Coloring, points: &Points, ways: &Ways) {
+    fn reach_with(&mut self, coloring: Coloring, points: &Points, ways: &Ways, rows: &[f64; POINTS]) {
         let ([_, x, y, z], [a, b, c]) = (&ways.backs, &points.normals);
         let mut amounts = [0.0; POINTS];
         for (i, amount) in amounts.iter_mut().enumerate() {
@@ -126,11 +130,19 @@ impl Arrivals {
             Coloring::Bolometric => (0..POINTS).for_each(|i| amounts[i] *= lamps[i] * lamps[i]),
             Coloring::Geometry | Coloring::Doppler => {}
         }
-        // Also nothing where something is no number.
-        self.amounts =
-            amounts.map(|amount| if amount > 0.0 && amount < f64::INFINITY { amount } else { 0.0 });
+        for i in 0..POINTS {
+            let is = points.mask >> i & 1 == 1;
+            // Also nothing where something is no number.
+            let amount = if (amounts[i] > 0.0) & (amounts[i] < f64::INFINITY) { amounts[i] } else { 0.0 };
+            self.amounts[i] = if is { amount } else { self.amounts[i] };
+            self.rows[i] = if is { rows[i] } else { self.rows[i] };
+        }
     }
 }
+
+/// Amounts that f32 holds.
+const TINY: f64 = 1e-30;
+const HUGE: f64 = 1e30;
 
 impl Diffuse<'_> {
     /// Linear sRGB radiance, in units of the film's white, of a surface of a colour that is seen at a Doppler factor, whose
@@ -144,7 +156,7 @@ impl Diffuse<'_> {
         base: [f32; 3],
         mut kept: Option<&mut [NearRows]>,
     ) -> Vec3A {
-        let mut sum = DVec3::ZERO;
+        let mut sum = Vec4::ZERO;
         for (light, of) in self.lights.iter().enumerate() {
             let Some([amount, row]) = arrives(light) else { continue };
             let color = match self.coloring {
@@ -160,9 +172,17 @@ impl Diffuse<'_> {
                     Vec3::from_array(beamed(coloring, doppler, unshifted)).extend(0.0)
                 }
             };
-            sum += color.as_dvec4().truncate() * amount;
+            // In f32, unless the amount itself might be beyond it.
+            sum += if (TINY..HUGE).contains(&amount) {
+                color * amount as f32
+            } else {
+                (color.as_dvec4() * amount).as_vec4()
+            };
         }
-        Vec3A::from_array(finite(sum.as_vec3().to_array()))
+        let light = Vec3A::from_vec4(sum);
+        // Nearly always, and told at once.
+        let is_usual = light.abs().cmplt(Vec3A::splat(HUGE as f32)).all();
+        if is_usual { light } else { finite(light.to_array()).into() }
     }
 }
 

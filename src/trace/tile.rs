@@ -46,6 +46,8 @@ pub(super) struct Tile {
     lit: Vec<u64>,
     /// What arrives of each light, by line of sight.
     arrivals: Vec<Arrivals>,
+    /// Rays to each light in a band, and how many of them are blocked.
+    to_lights: Vec<[u64; 2]>,
     count: Count,
 }
 
@@ -146,6 +148,8 @@ impl Tile {
         mut done: impl FnMut(&mut Self, &mut Faces<'a>, usize),
     ) -> Count {
         self.count = Count::default();
+        self.to_lights.clear();
+        self.to_lights.resize(job.to_lights.len(), [0; 2]);
         let mut faces = Faces::default();
         self.top = top;
         let width = job.lens.width();
@@ -183,6 +187,13 @@ impl Tile {
             }
         }
         self.count.path += std::mem::take(&mut self.paths.rays);
+        for (all, of_band) in job.to_lights.iter().zip(&self.to_lights) {
+            self.count.shadow += of_band[0];
+            self.count.blocked += of_band[1];
+            for (all, count) in all.iter().zip(of_band) {
+                all.fetch_add(*count, Ordering::Relaxed);
+            }
+        }
         self.count
     }
 
@@ -288,12 +299,9 @@ impl Tile {
                 }
                 let blocked = bundle.blocked(job.stage, index, points, ways, job.vectors);
                 self.lit[light] &= !blocked;
-                let [asked, stopped] = [ways.open, blocked].map(|bits| u64::from(bits.count_ones()));
-                self.count.shadow += asked;
-                self.count.blocked += stopped;
-                let [all_asked, all_stopped] = &job.to_lights[light];
-                all_asked.fetch_add(asked, Ordering::Relaxed);
-                all_stopped.fetch_add(stopped, Ordering::Relaxed);
+                for (count, bits) in self.to_lights[light].iter_mut().zip([ways.open, blocked]) {
+                    *count += u64::from(bits.count_ones());
+                }
             }
         }
     }
