@@ -265,9 +265,13 @@ impl Beam {
                 *least = if *value < *least { *value } else { *least };
             }
         }
-        let least = least.into_iter().fold(f32::INFINITY, |a, b| if b < a { b } else { a });
+        for half in [4, 2, 1] {
+            for i in 0..half {
+                least[i] = if least[i + half] < least[i] { least[i + half] } else { least[i] };
+            }
+        }
         // f32 may be off by some 10⁻⁷.
-        (1.0 + f64::from(CLOSE)) / (f64::from(least) * inverse_unit(place))
+        (1.0 + f64::from(CLOSE)) / (f64::from(least[0]) * inverse_unit(place))
     }
 
     /// Components in the beam's order, the longest positive.

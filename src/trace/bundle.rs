@@ -314,9 +314,6 @@ impl InLanes {
         let scale = target.tree.scale;
         let map = (target.motion != receiver.motion).then(|| stage.between(to, from));
         // Loops of plain arithmetic, which compilers make vectors of.
-        let (mut most, mut longest, mut shortest) = ([0f64; POINTS], [0f64; POINTS], [1f64; POINTS]);
-        // Of all there is, so that it is no number where anything is none.
-        let mut sum = [0f64; POINTS];
         for k in 0..3 {
             // The same frame up to where its origin is, or another.
             let [boosted_at, boosted_back];
@@ -330,24 +327,25 @@ impl InLanes {
                 }
             };
             for i in 0..POINTS {
-                let (place, along) = ((at[i] - centre[k]) * scale, back[i] * scale);
-                let (there, size) = (place.abs(), along.abs());
-                sum[i] += there + size;
-                most[i] = if there > most[i] { there } else { most[i] };
-                longest[i] = if size > longest[i] { size } else { longest[i] };
-                // A component that is 0 has an infinite inverse, which is right.
-                let size = if size > 0.0 { size } else { 1.0 };
-                shortest[i] = if size < shortest[i] { size } else { shortest[i] };
-                self.origin[k][i] = place as f32;
-                self.direction[k][i] = along as f32;
-                self.inverse[k][i] = 1.0 / along as f32;
+                self.origin[k][i] = ((at[i] - centre[k]) * scale) as f32;
+                self.direction[k][i] = (back[i] * scale) as f32;
             }
         }
-        let mut within = [false; POINTS];
+        // What is no number makes it all none.
+        let (mut sum, mut within) = ([0f32; POINTS], [false; POINTS]);
+        for k in 0..3 {
+            for (i, sum) in sum.iter_mut().enumerate() {
+                let along = self.direction[k][i];
+                *sum += self.origin[k][i].abs() + along.abs();
+                // Infinite where it is so little that nothing comes of it.
+                self.inverse[k][i] = 1.0 / along;
+            }
+        }
         for i in 0..POINTS {
-            within[i] = (sum[i] < 1e15) & (longest[i] > 1e-15) & (shortest[i] > 1e-30);
             let [x, y, z] = &self.direction;
-            self.length[i] = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt() * (1.0 + 4.0 * ROUNDING);
+            let length = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
+            within[i] = (sum[i] < 1e15) & (length > 1e-15);
+            self.length[i] = length * (1.0 + 4.0 * ROUNDING);
         }
         if bits(&within) & open != open {
             return false;
@@ -360,16 +358,16 @@ impl InLanes {
             for values in self.origin.iter_mut().chain(&mut self.direction).chain(&mut self.inverse) {
                 values[i] = values[one];
             }
-            most[i] = most[one];
         }
         self.far = ways.far as f32 * (1.0 + ROUNDING);
         self.near_far = ways.far as f32 * (1.0 - 4.0 * ROUNDING);
-        let most = most.iter().fold(0.0, |a, b| if *b > a { *b } else { a });
-        self.slack = most as f32 * ROUNDING;
+        let origins = self.origin.each_ref().map(range);
+        let most = origins.iter().flatten().fold(0f32, |most, c| most.max(c.abs()));
+        self.slack = most * ROUNDING;
         // As the rays themselves have it, by a bound of how far their origins are from the observer.
-        self.close = (CLOSE * (2.0 * most + centre.length() * scale + 1.0)) as f32;
-        for k in 0..3 {
-            let (origin, direction) = (range(&self.origin[k]), range(&self.direction[k]));
+        self.close = (CLOSE * (2.0 * f64::from(most) + centre.length() * scale + 1.0)) as f32;
+        for (k, origin) in origins.into_iter().enumerate() {
+            let direction = range(&self.direction[k]);
             let middle = 0.5 * direction[0] + 0.5 * direction[1];
             let backward = direction[1] < 0.0;
             let turned = |[low, high]: [f32; 2]| if backward { [-high, -low] } else { [low, high] };
@@ -566,12 +564,13 @@ fn range(values: &[f32; POINTS]) -> [f32; 2] {
             high[i] = if *value > high[i] { *value } else { high[i] };
         }
     }
-    let (mut least, mut greatest) = (low[0], high[0]);
-    for i in 1..GROUP {
-        least = if low[i] < least { low[i] } else { least };
-        greatest = if high[i] > greatest { high[i] } else { greatest };
+    for half in [4, 2, 1] {
+        for i in 0..half {
+            low[i] = if low[i + half] < low[i] { low[i + half] } else { low[i] };
+            high[i] = if high[i + half] > high[i] { high[i + half] } else { high[i] };
+        }
     }
-    [least, greatest]
+    [low[0], high[0]]
 }
 
 #[cfg(test)]
