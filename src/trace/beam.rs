@@ -39,6 +39,18 @@ pub(super) struct Beam {
     /// How many there are, filled up to whole vectors.
     count: usize,
     stack: Vec<Part>,
+    ties: Vec<Tie>,
+}
+
+/// Rays that a triangle is as near to as another, as far as f32 can tell.
+#[derive(Clone, Copy)]
+struct Tie {
+    /// Of the leaf.
+    number: u32,
+    /// A bit for each.
+    rays: u64,
+    /// 1/t, as [`Several`] has it.
+    nearness: [f32; 3],
 }
 
 #[repr(align(64))]
@@ -69,6 +81,7 @@ impl Default for Beam {
             },
             count: 0,
             stack: Vec::new(),
+            ties: Vec::new(),
         }
     }
 }
@@ -186,6 +199,7 @@ impl Beam {
                 // SAFETY: as this function.
                 unsafe { self.meet_leaves::<L>(tree, origin, unit, numbers) };
             }
+            self.settle(tree, origin, unit);
             return;
         }
         let boxes = Boxes::new(self, place, slack);
@@ -222,6 +236,7 @@ impl Beam {
         // SAFETY: as this function.
         unsafe { self.meet_leaves::<L>(tree, origin, unit, &waiting[..count]) };
         self.stack = stack;
+        self.settle(tree, origin, unit);
     }
 
     /// Whether any of some leaves, up to [`TOGETHER`], is nearer to any ray than what is known.
@@ -248,9 +263,12 @@ impl Beam {
         for (i, number) in numbers.iter().enumerate() {
             if several.is_met[i] {
                 // SAFETY: as this function.
-                let (nearer, doubtful) = unsafe { self.meet::<L>(&several, i, *number) };
+                let (nearer, rays) = unsafe { self.meet::<L>(&several, i, *number) };
                 any |= nearer;
-                any |= doubtful != 0 && self.settle(tree, origin, unit, *number, doubtful);
+                if rays != 0 {
+                    let nearness = several.nearness.each_ref().map(|c| c[i]);
+                    self.ties.push(Tie { number: *number, rays, nearness });
+                }
             }
         }
         any
@@ -323,31 +341,34 @@ impl Beam {
         }
     }
 
-    /// For rays that two triangles are as near to as f32 can tell: compares them in f64.
-    #[cold]
-    #[inline(never)]
-    fn settle(
-        &mut self,
-        tree: &Tree,
-        origin: &Origin<'_>,
-        unit: f64,
-        number: u32,
-        mut doubtful: u64,
-    ) -> bool {
-        let mut any = false;
-        while doubtful != 0 {
-            let i = doubtful.trailing_zeros() as usize;
-            doubtful &= doubtful - 1;
-            let exact = |number: u32| self.nearness(&tree.leaf(number), origin, unit, i);
-            let face = |number: u32| tree.leaf(number).face;
-            let (new, old) = (exact(number), self.found(i));
-            if old == NONE || is_before((new, face(number)), (exact(old), face(old))) {
-                self.rays.nearness[i] = self.rays.nearness[i].max(new as f32);
-                self.rays.found[i] = f32::from_bits(number);
-                any = true;
+    /// Compares in f64 what rays are as near to as f32 can tell, if nothing else turned out to be nearer.
+    fn settle(&mut self, tree: &Tree, origin: &Origin<'_>, unit: f64) {
+        let ties = std::mem::take(&mut self.ties);
+        for Tie { number, mut rays, nearness: [c, a, b] } in ties.iter().copied() {
+            while rays != 0 {
+                let i = rays.trailing_zeros() as usize;
+                rays &= rays - 1;
+                let near = c + a * self.rays.from_middle[0][i] + b * self.rays.from_middle[1][i];
+                if near > self.rays.nearness[i] * (1.0 - 2.0 * CLOSE) {
+                    self.compare(tree, origin, unit, number, i);
+                }
             }
         }
-        any
+        self.ties = ties;
+        self.ties.clear();
+    }
+
+    /// Whether a ray sees this leaf rather than what it has found: in f64.
+    #[cold]
+    #[inline(never)]
+    fn compare(&mut self, tree: &Tree, origin: &Origin<'_>, unit: f64, number: u32, ray: usize) {
+        let exact = |number: u32| self.nearness(&tree.leaf(number), origin, unit, ray);
+        let face = |number: u32| tree.leaf(number).face;
+        let (new, old) = (exact(number), self.found(ray));
+        if old == NONE || is_before((new, face(number)), (exact(old), face(old))) {
+            self.rays.nearness[ray] = self.rays.nearness[ray].max(new as f32);
+            self.rays.found[ray] = f32::from_bits(number);
+        }
     }
 
     /// 1/t in f64.
