@@ -8,8 +8,8 @@ use std::io::Write;
 pub fn pixels_srgb(film: &Film, development: &Development) -> Vec<u8> {
     let mut pixels = vec![0; 3 * film.color.len()];
     const BLOCK: usize = 256;
-    let blocks = pixels.par_chunks_mut(3 * BLOCK).zip(film.color.par_chunks(BLOCK));
-    blocks.with_min_len(16).for_each(|(pixels, colors)| {
+    let blocks = pixels.par_chunks_mut(3 * BLOCK).zip(film.color.par_chunks(BLOCK)).enumerate();
+    blocks.with_min_len(16).for_each(|(number, (pixels, colors))| {
         // Black stays black.
         if colors.as_flattened().iter().any(|v| *v != 0.0) {
             let shown = &mut [[0.0; 3]; BLOCK][..colors.len()];
@@ -17,11 +17,12 @@ pub fn pixels_srgb(film: &Film, development: &Development) -> Vec<u8> {
             development.show(shown);
             encode(shown.as_flattened(), pixels);
         }
+        // At any exposure.
+        let numbered = pixels.chunks_exact_mut(3).zip(number * BLOCK..);
+        for (pixel, _) in numbered.filter(|(_, i)| film.is_flagged(*i)) {
+            pixel.copy_from_slice(&FLAGGED.map(encoded));
+        }
     });
-    // At any exposure.
-    for (_, pixel) in pixels.chunks_exact_mut(3).enumerate().filter(|(i, _)| film.is_flagged(*i)) {
-        pixel.copy_from_slice(&FLAGGED.map(encoded));
-    }
     pixels
 }
 

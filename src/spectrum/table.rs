@@ -212,12 +212,13 @@ impl DopplerTable {
     /// there.
     #[inline]
     fn place(&self, ln_doppler: f64) -> (f64, usize) {
-        let last = (self.nodes.len() - 3) as f64;
+        // There are some thousands at most, and small integers are the quicker ones.
+        let last = self.nodes.len() as i32 - 3;
         let place = (ln_doppler - self.start) * self.inverse_step;
         // NaN becomes the first.
-        let within = place.max(0.0).min(last);
-        let low = (within as usize).min(self.nodes.len() - 4);
-        (within - low as f64, low)
+        let within = place.max(0.0).min(f64::from(last));
+        let low = (within as i32).min(last - 1);
+        (within - f64::from(low), low as usize)
     }
 
     /// The nine numbers at ln D: columns for red, green and blue.
