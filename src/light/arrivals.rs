@@ -158,7 +158,7 @@ impl Diffuse<'_> {
     ) -> Vec3A {
         let mut sum = Vec4::ZERO;
         for (light, of) in self.lights.iter().enumerate() {
-            let Some([amount, row]) = arrives(light) else { continue };
+            let Some([amount, row]) = arrives(light).filter(|[amount, _]| *amount > 0.0) else { continue };
             let color = match self.coloring {
                 Coloring::Spectral => {
                     let Some(table) = self.material.reflected.get(light) else { continue };

@@ -212,7 +212,7 @@ impl DopplerTable {
     /// there.
     #[inline]
     fn place(&self, ln_doppler: f64) -> (f64, usize) {
-        // There are some thousands at most, and small integers are the quicker ones.
+        // There are not many, and small integers are the quicker ones.
         let last = self.nodes.len() as i32 - 3;
         let place = (ln_doppler - self.start) * self.inverse_step;
         // NaN becomes the first.

@@ -23,8 +23,9 @@ const GROUPS: usize = POINTS / GROUP;
 ///
 /// Who is outside of something closed, and sees a point of anything, is joined to it by a line that goes into the closed thing
 /// as often as out of it; so is the point to a light that is outside, too. Where triangles are closed, and eye and light outside
-/// of the boxes around all of them, a ray therefore hits none unless it hits one from the front, and the others need not be
-/// looked at: what is lit, and all that is near it, shows the light its front.
+/// of the box around all of them, a ray therefore hits none unless it hits one from the front, and the others need not be
+/// looked at: what is lit, and all that is near it, shows the light its front. (Only fronts are met more often than backs where
+/// backs were looked through.) That is so but for rounding: what begins within that of an edge is in its surface's shadow, or not.
 #[derive(Default)]
 pub(super) struct Bundle {
     /// What is in boxes that are still to be looked at, and the first group that may enter them.
@@ -130,24 +131,36 @@ impl<'a> Rays<'a> {
         )
     }
 
+    /// Which of some rays something stands in, one by one.
+    fn blocked_singly(&self, some: u64) -> u64 {
+        let (tree, mut stack) = (&self.target().tree, Vec::new());
+        numbers(some).fold(0, |bits, i| bits | u64::from(self.ray(i).is_blocked(tree, &mut stack)) << i)
+    }
+
     /// Which of some rays begin into the surface they come from, as they do where interpolated normals face a light and the
     /// triangle itself does not.
-    fn entering_own(&self, mut some: u64) -> u64 {
-        let mesh = &self.target().mesh;
-        if self.from != self.to || mesh.normals.is_empty() {
+    fn entering(&self, some: u64) -> u64 {
+        let mesh = &self.stage.targets[self.from].mesh;
+        if mesh.normals.is_empty() {
             return 0;
         }
-        let mut into = 0;
-        while some != 0 {
-            let i = some.trailing_zeros() as usize;
-            some &= some - 1;
+        let enters = |i: usize| {
             let [a, b, c] = mesh.corners(self.points.faces[i] as usize);
             let normal = (b - a).cross(c - a);
             let [sight, back] = [self.points.event(i), vector(&self.ways.backs, i)].map(|v| v.xyz());
-            into |= u64::from((normal.dot(sight) > 0.0) == (normal.dot(back) > 0.0)) << i;
-        }
-        into
+            (normal.dot(sight) > 0.0) == (normal.dot(back) > 0.0)
+        };
+        numbers(some).fold(0, |bits, i| bits | u64::from(enters(i)) << i)
     }
+}
+
+/// The numbers of the bits that are set.
+fn numbers(mut bits: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let number = bits.trailing_zeros() as usize;
+        bits &= bits.wrapping_sub(1);
+        (number < POINTS).then_some(number)
+    })
 }
 
 impl Bundle {
@@ -202,14 +215,12 @@ impl Bundle {
         let tree: &Tree = &rays.target().tree;
         if !self.lanes.aim(rays, all) {
             // Beyond what f32 holds.
-            let blocked = |i: usize| all >> i & 1 == 1 && rays.ray(i).is_blocked(tree, &mut Vec::new());
-            return (0..POINTS).map(|i| u64::from(blocked(i)) << i).sum();
+            return rays.blocked_singly(all);
         }
-        let mut open = all;
         let fronts = self.lanes.towards.map_or(&[][..], |_| tree.fronts());
-        if !fronts.is_empty() {
-            open &= !rays.entering_own(open);
-        }
+        // Those are not outside where they begin.
+        let single = if fronts.is_empty() { 0 } else { rays.entering(all) };
+        let mut open = all & !single;
         let mut stack = std::mem::take(&mut self.stack);
         stack.clear();
         stack.extend(tree.root().map(|inside| (inside, 0)));
@@ -270,7 +281,7 @@ impl Bundle {
             }
         }
         self.stack = stack;
-        all & !open
+        all & !single & !open | rays.blocked_singly(single)
     }
 }
 
@@ -358,6 +369,7 @@ impl InLanes {
             for values in self.origin.iter_mut().chain(&mut self.direction).chain(&mut self.inverse) {
                 values[i] = values[one];
             }
+            self.length[i] = self.length[one];
         }
         self.far = ways.far as f32 * (1.0 + ROUNDING);
         self.near_far = ways.far as f32 * (1.0 - 4.0 * ROUNDING);
@@ -388,12 +400,9 @@ impl InLanes {
         true
     }
 
-    /// Whether rays hit nothing that they do not hit from the front.
+    /// Whether rays hit nothing unless they hit something from the front.
     fn only_fronts(&self, rays: &Rays<'_>) -> bool {
         let Target { tree, map, .. } = rays.target();
-        if tree.fronts().is_empty() {
-            return false;
-        }
         let (eye, off) = Origin::of_observer(map).place(tree);
         let off = off as f32 + self.slack;
         // Of each component the least and the greatest.
@@ -401,16 +410,18 @@ impl InLanes {
             let about = |c: f32, way: f32| c + way * (ROUNDING * c.abs() + off);
             tree.is_outside(ranges.map(|[low, _]| about(low, -1.0)), ranges.map(|[_, high]| about(high, 1.0)))
         };
+        let far = rays.ways.far as f32;
         let end = |k: usize| {
             let mut ends = [0.0; POINTS];
             for (i, end) in ends.iter_mut().enumerate() {
-                *end = self.origin[k][i] + self.direction[k][i] * self.far;
+                *end = self.origin[k][i] + self.direction[k][i] * far;
             }
             range(&ends)
         };
         // What comes from infinity comes from outside.
         outside(eye.as_vec3().to_array().map(|c| [c; 2]))
-            && (self.far == f32::INFINITY || outside([end(0), end(1), end(2)]))
+            && !tree.fronts().is_empty()
+            && (far == f32::INFINITY || outside([end(0), end(1), end(2)]))
     }
 
     /// Which way they all go, if that is one way.
@@ -578,12 +589,12 @@ mod tests {
     use super::super::beam::tests::{random, soup};
     use super::*;
     use crate::relativity::Motion;
-    use crate::scene::{Camera, Lens, Projection};
+    use crate::scene::{Camera, Lens, Material, Mesh, Projection, shapes};
     use std::sync::Arc;
     use terrell_geodesic::{Celerity, Event, FourVector, Tetrad};
 
     /// Rays together, whatever the vectors, are blocked just where one at a time is by any triangle: from a body to itself,
-    /// to one in its frame and to moving ones, near and far, ending or not, along an axis, some of them left out.
+    /// to one in its frame and to moving ones, near and far, ending or not, along an axis or nearly so, some of them left out.
     #[test]
     fn bundles_are_blocked_where_rays_are() {
         let mut random = random(5);
@@ -610,7 +621,11 @@ mod tests {
                 let number = POINTS - round % 2 * 5;
                 for i in 0..POINTS {
                     let way = to + point(width) - (from + point(width));
-                    let way = if round % 8 == 3 { way * DVec3::X } else { way };
+                    let way = match round % 8 {
+                        3 => way * DVec3::X,
+                        5 => way * DVec3::new(1.0, 1e-35, 1e-42),
+                        _ => way,
+                    };
                     let at = from + point(width);
                     let (event, back) = (
                         FourVector::<terrell_geodesic::Rest>::from_parts(-at.length(), at),
@@ -657,5 +672,120 @@ mod tests {
             }
         }
         assert!(blocked > 5000 && free > 10_000, "{blocked} {free}");
+    }
+
+    /// Fronts alone say what all triangles say, of points that are seen from outside: of balls and cubes, with normals that lean
+    /// or none, turned inside out, seen through their backs or not, and of a patch that lies on one.
+    #[test]
+    fn fronts_do_where_meshes_are_closed() {
+        let mut random = random(8);
+        let observer = Tetrad::of_world(Event::origin());
+        let camera = Camera { observer, lens: Lens::new(Projection::Pinhole, 45.0, 8, 8).unwrap() };
+        let inside_out = |mut mesh: Mesh| {
+            mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+            mesh
+        };
+        let smooth = |mut mesh: Mesh| {
+            let normal = |i| mesh.vertex(i).normalize().as_vec3().to_array();
+            mesh.normals = (0..mesh.vertex_count() as u32).map(normal).collect();
+            mesh
+        };
+        let one_sided = |mut mesh: Mesh| {
+            mesh.materials = vec![Material { one_sided: true, ..Material::default() }];
+            mesh
+        };
+        let mut patch = smooth(shapes::sphere(2));
+        patch.triangles.truncate(60);
+        let room = one_sided(smooth(inside_out(shapes::sphere(2))));
+        let meshes = [patch, smooth(shapes::sphere(2)), room, inside_out(shapes::cube()), shapes::cube()];
+        let places = [
+            (0.0, DVec3::ZERO),
+            (0.0, DVec3::ZERO),
+            (0.0, DVec3::new(1.3, 0.6, 0.3)),
+            (2.0, DVec3::new(-1.0, 0.8, -1.5)),
+            (0.5, DVec3::new(0.3, -1.2, -0.8)),
+        ];
+        let bodies = meshes.into_iter().zip(places).enumerate().map(|(i, (mesh, (u, place)))| {
+            let celerity = Celerity::new(DVec3::new(u, -0.2 * u, 0.1 * u)).unwrap();
+            let motion = Motion { celerity, origin: Event::at(-5.0, place + DVec3::Z * 6.0) };
+            let mesh = Arc::new(mesh);
+            (i, motion, mesh.clone(), Arc::new(Tree::new(&mesh)))
+        });
+        let stage = Stage::new(bodies.collect(), &camera, true);
+        let mut bundle = Bundle::default();
+        let (mut points, mut ways) = (Points::default(), Ways::default());
+        let [mut culled, mut blocked, mut free, mut entering] = [0; 4];
+        for round in 0..400 {
+            let from = round % 5;
+            let target = &stage.targets[from];
+            let mut point = || DVec3::from_array([0; 3].map(|_| random() - 0.5));
+            let middle = target.map.offset_rest(target.tree.centre) + 1.5 * point();
+            // At rest there, now and then far away.
+            let lamp = target.map.offset_rest(8.0 * point()) * [1.0, 1.0, 1e3][round % 3];
+            (points.mask, ways.open, ways.far) = (0, 0, if round % 7 == 0 { f64::INFINITY } else { 1.0 });
+            for i in 0..POINTS {
+                let direction = middle + [0.02, 0.5][round % 2] * point();
+                let sight = FourVector::from_parts(-direction.length(), direction);
+                // The first of all bodies' triangles that is seen.
+                let seen = |leaf: &Leaf, target: &Target, direction: DVec3| {
+                    let [a, b, c] = leaf.corners.map(|c| target.map.offset_rest(c));
+                    let is_front = (b - a).cross(c - a).dot(a) < 0.0;
+                    let at = super::super::ray::meet([a, b, c], direction)?;
+                    (at > 0.0 && (is_front || !leaf.one_sided)).then_some(at)
+                };
+                let nearest = (0..5)
+                    .flat_map(|index| {
+                        let target = &stage.targets[index];
+                        let back = stage.between(index, from) * sight;
+                        target
+                            .tree
+                            .leaves()
+                            .filter_map(move |leaf| Some((seen(&leaf, target, back.xyz())?, index, leaf)))
+                    })
+                    .min_by(|a, b| a.0.total_cmp(&b.0));
+                let Some((at, index, leaf)) = nearest.filter(|(_, index, _)| *index == from) else {
+                    continue;
+                };
+                assert_eq!(index, from);
+                let xyz = direction * at;
+                let way = lamp - xyz;
+                let [first, ..] = target.mesh.triangles[leaf.face as usize];
+                let normal = match target.mesh.normals.get(first as usize) {
+                    None => (leaf.corners[1] - leaf.corners[0]).cross(leaf.corners[2] - leaf.corners[0]),
+                    Some(normal) => glam::Vec3::from(*normal).as_dvec3(),
+                };
+                // On the side that is seen.
+                let turned = if normal.dot(xyz) > 0.0 { -normal } else { normal };
+                if turned.dot(way) <= 0.0 {
+                    continue;
+                }
+                ways.open |= 1 << i;
+                points.faces[i] = leaf.face;
+                for (k, (at, back)) in xyz.to_array().into_iter().zip(way.to_array()).enumerate() {
+                    (points.events[k + 1][i], ways.backs[k + 1][i]) = (at, back);
+                }
+                (points.events[0][i], ways.backs[0][i]) = (-xyz.length(), -way.length());
+            }
+            for to in (0..5).filter(|_| ways.open != 0) {
+                let rays = Rays { stage: &stage, points: &points, ways: &ways, from, to };
+                let tree = &stage.targets[to].tree;
+                let every = |i: usize| tree.leaves().any(|leaf| rays.ray(i).hits(&leaf));
+                let expected = numbers(ways.open).filter(|i| every(*i)).fold(0, |bits, i| bits | 1 << i);
+                for vectors in [false, true] {
+                    assert_eq!(bundle.blocked_by(&rays, ways.open, vectors), expected, "{round} {from} {to}");
+                }
+                if bundle.lanes.towards.is_some() {
+                    culled += 1;
+                    entering += rays.entering(ways.open).count_ones();
+                    blocked += expected.count_ones();
+                    free += (ways.open & !expected).count_ones();
+                }
+            }
+        }
+        println!("{culled} {blocked} {free} {entering}");
+        assert!(
+            culled > 200 && blocked > 500 && free > 2000 && entering > 50,
+            "{culled} {blocked} {free} {entering}"
+        );
     }
 }

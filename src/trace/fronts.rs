@@ -1,3 +1,4 @@
+use super::random::mix;
 use super::tree::{Tree, WIDE};
 use glam::DVec3;
 
@@ -35,7 +36,8 @@ impl Fronts {
             cones[number] = std::array::from_fn(|i| match tree.look(branch.inside(i)) {
                 Ok(_) => Cone::around(cones[branch.inside(i).number()].iter().flatten().copied()),
                 Err(leaves) => Cone::around(leaves.filter_map(|number| {
-                    let [a, b, c] = tree.leaf(number).corners.map(|corner| corner * tree.scale);
+                    let [a, b, c] =
+                        tree.leaf(number).corners.map(|corner| (corner - tree.centre) * tree.scale);
                     // What has no area is not hit.
                     let axis = (b - a).cross(c - a).try_normalize()?;
                     Some(Cone { axis, angle: 0.0 })
@@ -109,14 +111,6 @@ fn are_closed(tree: &Tree) -> bool {
         }
     }
     sum == 0
-}
-
-/// A number that looks random, another for every other (the end of SplitMix64, G. Steele et al. 2014).
-fn mix(value: u64) -> u64 {
-    let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let value = (value ^ value >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let value = (value ^ value >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    value ^ value >> 31
 }
 
 #[cfg(test)]

@@ -26,6 +26,11 @@ impl Random {
     }
 }
 
+/// A number that looks random, another one for every other.
+pub(super) fn mix(value: u64) -> u64 {
+    Random(value).bits()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
