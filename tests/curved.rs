@@ -309,6 +309,28 @@ fn what_cannot_rest_is_flagged_and_counted() {
     assert_eq!(pixels(folder.path().join("s.png")).pixels().filter(magenta).count(), flagged);
 }
 
+/// Near the horizon, falling or carried around, within the ergosphere or above it, and however fast the hole rotates: none is
+/// given up, and most of what falls sees is the sky.
+#[test]
+fn near_fast_holes_no_ray_is_lost() {
+    for (spin, above) in
+        [(0.0, 0.002), (0.9, 0.01), (0.95, 0.02), (0.99, 0.09), (0.998, 0.05), (1.0, 0.2), (-1.0, 0.1)]
+    {
+        let hole = KerrSchild::new(1.0, spin).unwrap();
+        let r = hole.horizon() * (1.0 + above);
+        for (observer, y) in [("rain", r.hypot(spin)), ("zamo", r.hypot(spin)), ("rain", 0.0), ("zamo", 0.0)]
+        {
+            let z = if y == 0.0 { r } else { 0.0 };
+            let scene = scene(&format!(
+                "[spacetime]\nmetric = \"kerr\"\nspin = {spin}\n[camera]\nposition = [0, {y}, {z}]\nobserver = \"{observer}\"\nforward = [1, 0, 0]\nup = [0, 1, 1]\nprojection = \"panorama\"\nsize = [32, 16]\n[sky]\ntexture = \"checker\"\n"
+            ));
+            let count = traced(&scene).1.rays.unwrap().count;
+            assert_eq!(count.failed(), 0, "a = {spin}, {above} above, {observer}");
+            assert!(observer == "zamo" || count.sky > 256, "a = {spin}, {above} above: {count:?}");
+        }
+    }
+}
+
 /// Rays that are given up are flagged, never black.
 #[test]
 fn rays_that_fail_are_flagged() {

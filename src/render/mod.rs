@@ -200,15 +200,17 @@ pub fn around(hole: KerrSchild) -> Curved<KerrSchild> {
 
 /// As [`around`], for who looks from somewhere: from near the horizon light that comes from outside is followed to less. Its
 /// wave vector is large there and becomes small on the way out, and errors of its beginning do not; they grow like one over
-/// the square of the height. Below a thousandth of the horizon's radius f64 has too few digits, rays drift, and are
-/// flagged.
+/// the square of [`tortoise_slope`](KerrSchild::tortoise_slope), which is the height above the horizon in parts of its radius
+/// where nothing rotates, and less around fast holes. Where that is less than some 10⁻⁴, f64 has too few digits, rays drift, and
+/// are flagged.
 pub fn around_seen_from(hole: KerrSchild, eye: &Eye) -> Curved<KerrSchild> {
     let usual = around(hole);
     let Eye::Near(frame) = eye else { return usual };
-    let height = hole.radius(frame.event().position().to_array()) / hole.horizon() - 1.0;
-    let part = (10.0 * height * height).clamp(1e-5, 1.0);
-    let accuracy = usual.accuracy();
-    usual.with(Accuracy::new(part * accuracy.tolerance, accuracy.sagitta))
+    let slope = hole.tortoise_slope(hole.radius(frame.event().position().to_array()));
+    let part = (10.0 * slope * slope).clamp(1e-5, 1.0);
+    let Accuracy { tolerance, sagitta, drift, .. } = usual.accuracy();
+    // Drift grows as errors do, and matters no more than elsewhere.
+    usual.with(Accuracy { drift, ..Accuracy::new(part * tolerance, sagitta) })
 }
 
 /// ε of chords, in masses: where rays are cheapest; hits are exact whatever it is.

@@ -74,6 +74,13 @@ impl KerrSchild {
         self.mass + ((self.mass - self.spin) * (self.mass + self.spin)).sqrt()
     }
 
+    /// dr/dr* = Δ/(r² + a²) at a Boyer–Lindquist radius: how fast r of light that goes straight in or out (along a principal
+    /// null direction) changes with the time far away. 1 far away, 0 at the horizon.
+    pub fn tortoise_slope(&self, r: f64) -> f64 {
+        let inner = self.spin * self.spin / self.horizon();
+        (r - self.horizon()) * (r - inner) / (r * r + self.spin * self.spin)
+    }
+
     /// The Boyer–Lindquist radius r of a place: r⁴ − (x² + y² + z² − a²) r² − a²z² = 0.
     #[inline(always)]
     pub fn radius<S: Number>(&self, [x, y, z]: [S; 3]) -> S {
@@ -210,6 +217,19 @@ mod tests {
             for i in 0..8 {
                 prop_assert!((back[i] - state[i]).abs() < 1e-13, "{back:?} {state:?}");
             }
+        }
+    }
+
+    /// Δ/(r² + a²), by the definition of Δ, and also where that cancels.
+    #[test]
+    fn light_slows_down_towards_the_horizon() {
+        for spin in [0.0, 0.5, -0.9, 0.999, 1.0] {
+            let hole = KerrSchild::new(1.0, spin).unwrap();
+            for r in [1.001, 1.1, 2.0, 5.0, 1e6].map(|part| part * hole.horizon()) {
+                let expected = (r * r - 2.0 * r + spin * spin) / (r * r + spin * spin);
+                assert!((hole.tortoise_slope(r) - expected).abs() < 1e-15, "{spin} {r}");
+            }
+            assert_eq!(hole.tortoise_slope(hole.horizon()), 0.0);
         }
     }
 

@@ -116,8 +116,8 @@ type Cells = Vec<(Off, f64)>;
 
 /// As pictures do, but for the tolerance.
 fn follow(hole: KerrSchild, (event, k): Start, tolerance: f64) -> End {
-    let usual = around(hole).accuracy();
-    let space = Curved::new(hole).with(Accuracy::new(tolerance, usual.sagitta));
+    let Accuracy { sagitta, drift, .. } = around(hole).accuracy();
+    let space = Curved::new(hole).with(Accuracy { drift, ..Accuracy::new(tolerance, sagitta) });
     space.ray(event, k).follow()
 }
 
@@ -165,24 +165,45 @@ fn near_axis(distance: f64) -> Vec<Probe> {
     begin.chain(pass.into_iter().filter_map(|(a, b)| Probe::distant(&passing, hole, a, b))).collect()
 }
 
-/// One who looks out, so far above the horizon, in parts of its radius.
-fn above_horizon(above: f64) -> Option<(KerrSchild, LocalFrame)> {
-    let hole = KerrSchild::new(1.0, 0.9).ok()?;
-    let r = hole.horizon() * (1.0 + above);
-    let event = hole.from_boyer_lindquist(BoyerLindquist { t: 0.0, r, theta: 1.1, phi: 0.3 });
-    let velocity = hole.zamo(event).ok()?;
-    Some((hole, LocalFrame::new(&Curved::new(hole), event, velocity, event.position(), DVec3::Z).ok()?))
+/// Who looks out from near a horizon.
+#[derive(Clone, Copy)]
+struct LookOut {
+    spin: f64,
+    /// From rest far away, or resting but for the rotation.
+    falls: bool,
 }
 
-/// Rays of one who rests, but for the rotation, so far above the horizon, in parts of its radius: those that come from the
-/// sky, into the cone that is left of it.
-fn near_horizon(above: f64) -> Vec<Probe> {
-    let Some((hole, frame)) = above_horizon(above) else { return Vec::new() };
-    let cone = above.sqrt().min(1.0);
-    let directions = [0.0, 0.1, 0.3, 0.6].into_iter().flat_map(|part| {
-        [0.0f64, 2.0, 4.0].map(|turn| DVec3::new(part * cone * turn.cos(), part * cone * turn.sin(), 1.0))
-    });
-    directions.map(|n| Probe::near(&frame, hole, n)).collect()
+const RESTING: LookOut = LookOut { spin: 0.9, falls: false };
+const FALLING: LookOut = LookOut { spin: 0.998, falls: true };
+
+impl LookOut {
+    /// So far above the horizon, in parts of its radius.
+    fn at(self, above: f64) -> Option<(KerrSchild, LocalFrame)> {
+        let hole = KerrSchild::new(1.0, self.spin).ok()?;
+        let r = hole.horizon() * (1.0 + above);
+        let event = hole.from_boyer_lindquist(BoyerLindquist { t: 0.0, r, theta: 1.1, phi: 0.3 });
+        let velocity = if self.falls { hole.rain(event) } else { hole.zamo(event) }.ok()?;
+        let frame = LocalFrame::new(&Curved::new(hole), event, velocity, event.position(), DVec3::Z).ok()?;
+        Some((hole, frame))
+    }
+
+    /// Rays that come from the sky: into the cone that is left of it, or into nearly all directions for who falls.
+    fn rays(self, above: f64) -> Vec<Probe> {
+        let Some((hole, frame)) = self.at(above) else { return Vec::new() };
+        let cone = if self.falls { 1.0 } else { above.sqrt().min(1.0) };
+        let directions = [0.0, 0.1, 0.3, 0.6].into_iter().flat_map(|part| {
+            [0.0f64, 2.0, 4.0].map(|turn| DVec3::new(part * cone * turn.cos(), part * cone * turn.sin(), 1.0))
+        });
+        let beside = [0.0f64, 1.3, 2.6, 3.9, 5.2].map(|turn| DVec3::new(turn.cos(), turn.sin(), 0.0));
+        let beside = beside.into_iter().filter(|_| self.falls);
+        directions.chain(beside).map(|n| Probe::near(&frame, hole, n)).collect()
+    }
+
+    /// What pictures are made with there.
+    fn tolerance(self, above: f64) -> f64 {
+        let tolerance = |(hole, frame)| around_seen_from(hole, &Eye::Near(frame)).accuracy().tolerance;
+        self.at(above).map_or(f64::NAN, tolerance)
+    }
 }
 
 /// Rays past a hole whose spin is so far below its mass, on both sides of it.
@@ -211,12 +232,8 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
     };
     let (beyond, axis, above, below) = (few(&BEYOND), few(&FROM_AXIS), few(&ABOVE), few(&BELOW));
     let usual = KerrSchild::schwarzschild(1.0).map_or(f64::NAN, |hole| around(hole).accuracy().tolerance);
-    let from_above = |above: f64| {
-        let (hole, frame) = above_horizon(above)?;
-        Some(around_seen_from(hole, &Eye::Near(frame)).accuracy().tolerance)
-    };
     let everywhere = |columns: &[f64]| vec![usual; columns.len()];
-    let looking_out = above.iter().map(|x| from_above(*x).unwrap_or(f64::NAN)).collect();
+    let looking_out = |who: LookOut| above.iter().map(|x| who.tolerance(*x)).collect();
     [
         (
             "impact",
@@ -236,8 +253,15 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
             "horizon",
             "Looking out from near the horizon, a = 0.9 M",
             Axis::of("height above the horizon, of its radius", above.clone()),
-            of(&above, near_horizon),
-            looking_out,
+            of(&above, |x| RESTING.rays(x)),
+            looking_out(RESTING),
+        ),
+        (
+            "falling",
+            "Falling past near the horizon, a = 0.998 M",
+            Axis::of("height above the horizon, of its radius", above.clone()),
+            of(&above, |x| FALLING.rays(x)),
+            looking_out(FALLING),
         ),
         (
             "spin",
@@ -282,17 +306,16 @@ pub(super) fn maps(resolution: Resolution) -> Vec<Map> {
 }
 
 fn words(map: &Map, usual: f64) -> String {
+    let near_horizon = ["horizon", "falling"].contains(&map.name.as_str());
     let rows = (0..map.errors.len()).filter(|&c| map.fails(c)).map(|c| map.y.values[c / map.x.len()]);
     let what = match rows.reduce(f64::min) {
-        Some(_) if map.name == "horizon" => "Fails the more, the nearer to the horizon".to_owned(),
+        Some(_) if near_horizon => "Fails the more, the nearer to the horizon".to_owned(),
         Some(tolerance) => format!("Fails in places from {} a step on", number(tolerance)),
         None => "Fails nowhere".to_owned(),
     };
     let worst = map.worst(&[Planner::Enters]).unwrap_or(f64::NAN);
-    let made = match map.name.as_str() {
-        "horizon" => format!("Pictures are made with {}, and less near the horizon", number(usual)),
-        _ => format!("Pictures are made with {}", number(usual)),
-    };
+    let less = if near_horizon { ", and less near the horizon" } else { "" };
+    let made = format!("Pictures are made with {}{less}", number(usual));
     let warned = match map.planner.contains(&Planner::Warns) {
         true => "; nearer than that rays are known to drift, and are flagged in the picture",
         false => "",
