@@ -5,15 +5,18 @@ mod common;
 mod program;
 
 use common::{points, vec3};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use program::{bad, good};
 use serde_json::Value;
+use std::f64::consts::FRAC_PI_2;
 use terrell::color::Coloring;
+use terrell::film::Film;
 use terrell::geodesic::{Celerity, Event, Real, Wide};
 use terrell::measure::stability::{Map, Planner, Resolution, SHEETS, conditioning, seen};
 use terrell::plan::{MOST_GAMMA, Method, cheapest, lacks_digits};
 use terrell::relativity::Motion;
-use terrell::scene::{Speed, builtin_scene};
+use terrell::render::{Options, render};
+use terrell::scene::{Aim, Body, Projection, Scene, Speed, View, builtin_scene, shapes};
 
 /// A sheet's maps, coarsely, none of which fails where the planner goes: that is what they are for.
 fn sheet(name: &str) -> Vec<Map> {
@@ -217,4 +220,37 @@ fn the_chart_is_drawn_and_told() {
     assert_eq!(csv.lines().count(), 1 + maps.iter().map(|m| size(&m["x"]) * size(&m["y"])).sum::<usize>());
     assert!(bad(&["chart", "--stability", "-o", "s.pdf"], at).contains(".pdf"));
     assert!(bad(&["chart", "--stability", "--geodesics"], at).contains("--geodesics"));
+}
+
+/// A poster before a wall, at whose back the camera looks as they pass: depth is squeezed by 2γ, and what is nearer is seen all
+/// the same, though f32 cannot tell.
+#[test]
+fn what_lies_before_hides_what_is_behind_at_any_speed() {
+    for gamma in [2.0f64, 1e3, 1e5, 1e6, 1e7, 1e8] {
+        let celerity = Celerity::new(DVec3::X * (gamma - 1.0).sqrt() * (gamma + 1.0).sqrt()).unwrap();
+        let motion = Motion { celerity, origin: Event::at(-4.0, DVec3::Y * 4.0) };
+        let facing_back = DAffine3::from_rotation_y(FRAC_PI_2);
+        let plate = |size: f64, before: f64| {
+            let place = DAffine3::from_translation(DVec3::X * -before) * facing_back;
+            shapes::plate().placed(&(place * DAffine3::from_scale(DVec3::splat(size))))
+        };
+        for projection in [Projection::Pinhole, Projection::Panorama] {
+            let view = View { aim: Aim::Forward(DVec3::Y), projection, size: [160, 80], ..View::default() };
+            let seen = |bodies: Vec<Body>| {
+                let scene = Scene::new("posted", bodies, view.clone());
+                let options = Options { method: Method::Apparent, ..Options::default() };
+                render(&scene, &scene.camera().unwrap(), &options, |_| ()).unwrap().0
+            };
+            let poster = || Body::new("poster", plate(0.7, 1e-3), motion);
+            let (alone, both) =
+                (seen(vec![poster()]), seen(vec![Body::new("wall", plate(1.0, 0.0), motion), poster()]));
+            let of = |film: &Film, body| film.body.iter().map(|b| *b == body).collect::<Vec<_>>();
+            let differ = of(&alone, 0).iter().zip(of(&both, 1)).filter(|(a, b)| **a != *b).count();
+            assert_eq!(differ, 0, "{gamma:e} {projection:?}");
+            assert!(
+                alone.covered() > 50 && both.covered() > alone.covered() + 50,
+                "{gamma:e} {projection:?}"
+            );
+        }
+    }
 }

@@ -312,10 +312,10 @@ impl Band {
         }
     }
 
-    /// Whether a fragment hides what is there already and nearly as near. Outlines are drawn up to the tolerance
-    /// too wide, and there the planes of two faces that meet in the outline have changed places: if the line of
-    /// sight passes beside both, and the point nearest to it is one for both, the face whose plane is farther
-    /// out here is the nearer one inside.
+    /// Whether a fragment hides what is there already and nearly as near, which at high speed is nearer than f32 can tell.
+    /// Outlines are drawn up to the tolerance too wide, and there the planes of two faces that meet in the outline have
+    /// changed places: if the line of sight passes beside both, and the point nearest to it is one for both, the face whose
+    /// plane is farther out here is the nearer one inside.
     #[cold]
     fn hides(&self, at: usize, nearness: f32, fragment: &Fragment<'_>) -> bool {
         let Fragment { stage, sampling, triangle, .. } = fragment;
@@ -330,15 +330,19 @@ impl Band {
             let seen = stage.seen(number)?;
             let along = seen.sky.boosted(direction, length).along;
             let plane = seen.surface.nearness(direction, length, along);
-            Some((plane, seen.beside(direction, length, along, plane)?))
+            Some((plane, seen.beside(direction, length, along, plane), seen.drawable.body))
         };
-        if let Some((plane, new)) = meet(*triangle)
-            && let Some((old_plane, old)) = meet(self.triangle[at])
-            && (new - old).abs() < SAME_POINT * old
-        {
-            return plane < old_plane;
+        let (Some((plane, beside, body)), Some((old_plane, old_beside, old_body))) =
+            (meet(*triangle), meet(self.triangle[at]))
+        else {
+            return nearness > self.nearness[at];
+        };
+        match (beside, old_beside) {
+            (Some(new), Some(old)) if body == old_body && (new - old).abs() < SAME_POINT * old => {
+                plane < old_plane
+            }
+            _ => plane > old_plane,
         }
-        nearness > self.nearness[at]
     }
 
     /// Looks up what the nearest triangles look like.
