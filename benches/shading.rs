@@ -141,9 +141,9 @@ fn main() {
                 draw(&seen);
                 let pixels = film.borrow().body.len() as f64;
                 let hit = film.borrow().covered() as f64 / pixels;
-                let [exact_once, trace_once] = [|s: &Scene| Tracer::exact(s, 1), Tracer::new]
+                let [exact_once, trace_once] = [|s: &Scene| Tracer::exact(s, Projection::Pinhole, 1), Tracer::new]
                     .map(|make: fn(&Scene) -> Tracer| median_ms(|| drop(make(&scene))));
-                let (exact, tracer) = (Tracer::exact(&scene, 1), Tracer::new(&scene));
+                let (exact, tracer) = (Tracer::exact(&scene, Projection::Pinhole, 1), Tracer::new(&scene));
                 let look = Look { samples: samples.offsets(), shading: &shading, paths: Paths::default() };
                 let camera = Camera { observer, lens };
                 let follow = |tracer: &Tracer| {

@@ -4,7 +4,7 @@ use crate::color::Coloring;
 use crate::light::has_shadows;
 use crate::plan::{MOST_GAMMA, Method, greatest_gamma, has_reflections};
 use crate::render::{Options, Raster};
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Projection, Scene};
 use crate::trace::Tracer;
 use std::fmt::{Display, Formatter};
 
@@ -119,13 +119,13 @@ impl Subject<'_> {
         if !lacks.is_empty() {
             return Verdict { name, is_right: false, reason: lacks.join("; ") };
         }
+        let projection = cameras.first().map_or(Projection::Pinhole, |camera| camera.lens.projection());
+        let is_listed = |pictures: usize| Tracer::is_listed(scene, projection, pictures);
         let reason = match method {
             Method::Exact => {
-                let by = match Tracer::is_listed(scene, cameras.len()) {
+                let by = match is_listed(cameras.len()) {
                     true => "by lists of where triangles may be seen, which are many for so few pictures",
-                    false if Tracer::is_listed(scene, 1) => {
-                        "through boxes around triangles, as pays for so many pictures"
-                    }
+                    false if is_listed(1) => "through boxes around triangles, as pays for so many pictures",
                     false => "through boxes around triangles, which are few",
                 };
                 let shadows = match has_shadows(scene) && options.coloring != Coloring::Doppler {
@@ -139,16 +139,14 @@ impl Subject<'_> {
                 options.tolerance
             ),
             Method::Trace if scene.spacetime.is_curved() => "the one that follows bent light".to_owned(),
-            Method::Trace if self.lacks(Method::Exact).is_empty() => {
-                match Tracer::is_listed(scene, cameras.len()) {
-                    true => "exact, too, but it builds boxes around all triangles first",
-                    false if options.paths.bounces > 0 => {
-                        "exact, too; there is nothing here that reflects onto anything"
-                    }
-                    false => "exact, too; without reflections, what exact shading does",
+            Method::Trace if self.lacks(Method::Exact).is_empty() => match is_listed(cameras.len()) {
+                true => "exact, too, but it builds boxes around all triangles first",
+                false if options.paths.bounces > 0 => {
+                    "exact, too; there is nothing here that reflects onto anything"
                 }
-                .to_owned()
+                false => "exact, too; without reflections, what exact shading does",
             }
+            .to_owned(),
             Method::Trace if options.paths.bounces == 0 => {
                 "the one that can follow light from surface to surface, which is not asked for".to_owned()
             }

@@ -11,7 +11,7 @@ use crate::plan::Method;
 use crate::raster::gpu::{Gpu, GpuError, Uncut};
 use crate::raster::{Drawable, TooManyToPaint, paint, shade_again};
 use crate::relativity::ApparentMap;
-use crate::scene::{Camera, Eye, EyeError, Mesh, Scene, Spacetime, SpacetimeError};
+use crate::scene::{Camera, Eye, EyeError, Mesh, Projection, Scene, Spacetime, SpacetimeError};
 use crate::trace::{Look, Paths, Traced, Tracer};
 use device::Device;
 pub use device::{OnCpu, has_gpu};
@@ -120,7 +120,9 @@ impl Options {
         let observers = cameras.iter().map(|c| &c.observer);
         let shading = Shading::new(scene, observers, self.coloring)?.with_doppler_at(self.doppler_at);
         let gpu = self.gpu(scene, &cameras)?;
-        let prepared = Prepared { shading, tracer: OnceLock::new(), pictures: cameras.len(), gpu };
+        let projection = cameras.first().map_or(Projection::Pinhole, |camera| camera.lens.projection());
+        let prepared =
+            Prepared { shading, tracer: OnceLock::new(), projection, pictures: cameras.len(), gpu };
         if prepared.gpu.is_none() {
             prepared.tracer(scene, self.method);
         }
@@ -135,6 +137,7 @@ pub struct Prepared {
     pub shading: Shading,
     /// Its meshes as lines of sight are followed through them, once they are.
     tracer: OnceLock<Tracer>,
+    projection: Projection,
     pictures: usize,
     gpu: Option<Device>,
 }
@@ -143,7 +146,9 @@ impl Prepared {
     /// What follows lines of sight, if something does.
     fn tracer(&self, scene: &Scene, method: Method) -> Option<&Tracer> {
         match method {
-            Method::Exact => Some(self.tracer.get_or_init(|| Tracer::exact(scene, self.pictures))),
+            Method::Exact => {
+                Some(self.tracer.get_or_init(|| Tracer::exact(scene, self.projection, self.pictures)))
+            }
             Method::Trace => Some(self.tracer.get_or_init(|| Tracer::new(scene))),
             Method::Apparent => None,
         }

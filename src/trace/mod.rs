@@ -35,7 +35,7 @@ mod tree;
 
 use crate::film::Film;
 use crate::light::{SeenShading, has_shadows};
-use crate::scene::{Camera, Eye, Lens, Scene};
+use crate::scene::{Camera, Eye, Lens, Projection, Scene};
 use crate::spectrum::luminance;
 use chord::Goal;
 use emitters::Emitters;
@@ -126,6 +126,10 @@ const FEW: usize = 1 << 15;
 /// lists do; where much is, a fraction of their time.
 const MANY: usize = 100;
 
+/// The same under a fisheye or a panorama, where bounds of where triangles may be seen are not had from their corners alone:
+/// lists take several times as long as a hierarchy is gone through there.
+const MANY_CURVED: usize = 2;
+
 impl Finder {
     fn tree(self, mesh: &Arc<crate::scene::Mesh>) -> Arc<Tree> {
         Arc::new(match self {
@@ -146,13 +150,14 @@ impl Tracer {
     /// are rays followed, so that without them no hierarchy is built. Only where that does not matter, because triangles are
     /// few or pictures many, it is quicker to go through one. Either way it sees just what rays see. Paths are not for it, nor
     /// is curved spacetime.
-    pub fn exact(scene: &Scene, pictures: usize) -> Self {
-        if Self::is_listed(scene, pictures) { Self::listing(scene) } else { Self::new(scene) }
+    pub fn exact(scene: &Scene, projection: Projection, pictures: usize) -> Self {
+        if Self::is_listed(scene, projection, pictures) { Self::listing(scene) } else { Self::new(scene) }
     }
 
     /// Whether [`exact`](Self::exact) lists triangles for so many pictures of a scene.
-    pub fn is_listed(scene: &Scene, pictures: usize) -> bool {
-        scene.triangle_count() >= FEW && pictures <= MANY
+    pub fn is_listed(scene: &Scene, projection: Projection, pictures: usize) -> bool {
+        let many = if projection == Projection::Pinhole { MANY } else { MANY_CURVED };
+        scene.triangle_count() >= FEW && pictures <= many
     }
 
     /// As [`exact`](Self::exact), however few triangles or many pictures there are.
