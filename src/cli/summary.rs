@@ -21,10 +21,10 @@ pub fn gammas(scene: &Scene, camera: &Camera) -> Vec<f64> {
 /// "1 body, γ 2.29", "3 bodies, γ up to 7.1".
 pub fn bodies_in_words(gammas: &[f64]) -> String {
     let fastest = gammas.iter().copied().fold(1.0, f64::max);
+    let fastest = if fastest < 1e6 { format!("{fastest:.4}") } else { format!("{fastest:e}") };
     match gammas.len() {
-        1 => format!("1 body, γ {fastest:.4}"),
-        n if fastest < 1e6 => format!("{n} bodies, γ up to {fastest:.4}"),
-        n => format!("{n} bodies, γ up to {fastest:e}"),
+        1 => format!("1 body, γ {fastest}"),
+        n => format!("{n} bodies, γ up to {fastest}"),
     }
 }
 

@@ -58,6 +58,9 @@ impl FrameFolder {
     /// If it cannot be made or read, or holds frames that are not in its list.
     pub fn open(folder: &Path) -> Result<Self, FramesError> {
         let fault = |source| WriteError::Io { path: folder.to_owned(), source };
+        if folder.is_file() {
+            return Err(fault(std::io::ErrorKind::NotADirectory.into()).into());
+        }
         std::fs::create_dir_all(folder).map_err(fault)?;
         // A list that cannot be read is none.
         let list: List = std::fs::read(folder.join(LIST))
