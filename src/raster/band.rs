@@ -35,6 +35,9 @@ struct Fragment<'a> {
 /// Nearest points of two triangles that differ by less, relative, are one: rounding.
 const SAME_POINT: f64 = 1e-9;
 
+/// Planes nearer to each other, relative, are in one place, where the first of two triangles is seen: what f64 leaves over.
+const SAME_PLANE: f64 = 1e-13;
+
 /// Whether two surfaces at a pixel are so near to each other that outlines drawn too wide could matter; never
 /// where nothing is drawn yet.
 #[inline]
@@ -341,6 +344,7 @@ impl Band {
             (Some(new), Some(old)) if body == old_body && (new - old).abs() < SAME_POINT * old => {
                 plane < old_plane
             }
+            _ if (plane - old_plane).abs() < SAME_PLANE * old_plane => *triangle < self.triangle[at],
             _ => plane > old_plane,
         }
     }
