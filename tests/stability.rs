@@ -166,9 +166,12 @@ fn doppler_factors_of_vertices_fail_for_large_triangles_and_are_not_chosen() {
 fn curved_light_is_followed_accurately_enough() {
     for map in sheet("curved") {
         let worst = map.worst(&[Planner::Enters]).unwrap();
-        // Ten times what is allowed in a step, over the conditioning.
-        assert!(worst < 1e-7, "{}: {worst:e}", map.name);
-        assert_eq!(map.planner.contains(&Planner::Warns), map.name == "horizon", "{}", map.name);
+        // Ten times what is allowed in a step, over the conditioning; from near a fast hole, of which the coarse map has steps
+        // a thousand times as long as pictures are made with, a quarter of a pixel over a hundred.
+        let most = if map.name == "falling" { 4e-6 } else { 1e-7 };
+        assert!(worst < most, "{}: {worst:e}", map.name);
+        let near_horizon = ["horizon", "falling"].contains(&map.name.as_str());
+        assert_eq!(map.planner.contains(&Planner::Warns), near_horizon, "{}", map.name);
     }
 }
 
