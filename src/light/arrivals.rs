@@ -1,7 +1,7 @@
 use super::SeenShading;
 use super::incidence::Incidence;
 use super::logarithm::{ln, logarithms};
-use super::points::{POINTS, Points, Ways};
+use super::points::{POINTS, Points, Ways, numbers};
 use super::seen::{beamed, finite};
 use super::shading::{MaterialShading, SceneLight};
 use crate::color::Coloring;
@@ -46,7 +46,7 @@ impl<'a> SeenShading<'a> {
     ) {
         if let Incidence::Ambient { axis, irradiance, .. } = self.incidence(body, light) {
             let radiance = self.strength(light);
-            for i in (0..POINTS).filter(|i| points.mask >> i & 1 == 1) {
+            for i in numbers(points.mask) {
                 let cos_psi = axis.dot(points.normal(i).normalize_or_zero());
                 let amount = match self.coloring() {
                     Coloring::Spectral => 1.0,

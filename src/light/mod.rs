@@ -22,7 +22,7 @@ pub use facet::Facet;
 pub(crate) use facet::{clamped, owns_boundary};
 pub(crate) use logarithm::logarithms;
 pub use point::Point;
-pub(crate) use points::{POINTS, Points, Ways, bits, component, vector};
+pub(crate) use points::{POINTS, Points, Ways, bits, component, numbers, vector};
 pub use seen::{Approach, SeenShading};
 pub(crate) use seen::{Glow, SurfaceLight};
 pub use shading::{DopplerAt, Shading, ShadingError, has_shadows};

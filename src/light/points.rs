@@ -90,6 +90,16 @@ pub(crate) fn bits(all: &[bool; POINTS]) -> u64 {
     bits
 }
 
+/// The numbers of the bits that are set.
+#[inline]
+pub(crate) fn numbers(mut bits: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let number = bits.trailing_zeros() as usize;
+        bits &= bits.wrapping_sub(1);
+        (number < POINTS).then_some(number)
+    })
+}
+
 /// A component of what a map, by that row of it, makes of vectors.
 #[inline(always)]
 pub(crate) fn component(row: [f64; 4], of: &Vectors) -> [f64; POINTS] {

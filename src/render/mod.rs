@@ -206,8 +206,8 @@ pub fn around(hole: KerrSchild) -> Curved<KerrSchild> {
 /// As [`around`], for who looks from somewhere: from near the horizon light that comes from outside is followed to less. Its
 /// wave vector is large there and becomes small on the way out, and errors of its beginning do not; they grow like one over
 /// the square of [`tortoise_slope`](KerrSchild::tortoise_slope), which is the height above the horizon in parts of its radius
-/// where nothing rotates, and less around fast holes. Where that is less than some 3·10⁻⁵, f64 has too few digits, rays drift, and
-/// are flagged.
+/// where nothing rotates, and less around fast holes. Where that is less than some 3·10⁻⁵, f64 has too few digits, rays
+/// drift, and are flagged.
 pub fn around_seen_from(hole: KerrSchild, eye: &Eye) -> Curved<KerrSchild> {
     let usual = around(hole);
     let Eye::Near(frame) = eye else { return usual };

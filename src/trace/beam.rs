@@ -7,6 +7,7 @@ use super::lanes::Lanes;
 use super::lanes::x86;
 use super::origin::Origin;
 use super::tree::{Branch, EachBox, Leaf, Part, Tree, WIDE};
+use crate::light::numbers;
 use glam::DVec3;
 
 /// The most rays of a beam.
@@ -344,10 +345,8 @@ impl Beam {
     /// Compares in f64 what rays are as near to as f32 can tell, if nothing else turned out to be nearer.
     fn settle(&mut self, tree: &Tree, origin: &Origin<'_>, unit: f64) {
         let ties = std::mem::take(&mut self.ties);
-        for Tie { number, mut rays, nearness: [c, a, b] } in ties.iter().copied() {
-            while rays != 0 {
-                let i = rays.trailing_zeros() as usize;
-                rays &= rays - 1;
+        for Tie { number, rays, nearness: [c, a, b] } in ties.iter().copied() {
+            for i in numbers(rays) {
                 let near = c + a * self.rays.from_middle[0][i] + b * self.rays.from_middle[1][i];
                 if near > self.rays.nearness[i] * (1.0 - 2.0 * CLOSE) {
                     self.compare(tree, origin, unit, number, i);
@@ -358,7 +357,7 @@ impl Beam {
         self.ties.clear();
     }
 
-    /// Whether a ray sees this leaf rather than what it has found: in f64.
+    /// Lets a ray see this leaf, if it does rather than what it has found: in f64.
     #[cold]
     #[inline(never)]
     fn compare(&mut self, tree: &Tree, origin: &Origin<'_>, unit: f64, number: u32, ray: usize) {

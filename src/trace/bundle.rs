@@ -7,7 +7,7 @@ use super::origin::Origin;
 use super::ray::Ray;
 use super::stage::{CLOSE, Stage, Target, Way};
 use super::tree::{Branch, Inside, Leaf, Tree, WIDE};
-use crate::light::{POINTS, Points, Ways, bits, component, vector};
+use crate::light::{POINTS, Points, Ways, bits, component, numbers, vector};
 use glam::{DVec3, Vec3};
 
 /// Rays that are tested together.
@@ -152,15 +152,6 @@ impl<'a> Rays<'a> {
         };
         numbers(some).fold(0, |bits, i| bits | u64::from(enters(i)) << i)
     }
-}
-
-/// The numbers of the bits that are set.
-fn numbers(mut bits: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let number = bits.trailing_zeros() as usize;
-        bits &= bits.wrapping_sub(1);
-        (number < POINTS).then_some(number)
-    })
 }
 
 impl Bundle {
@@ -362,10 +353,8 @@ impl InLanes {
             return false;
         }
         // Those that are not open do what one does that is.
-        let (mut closed, one) = (!open, open.trailing_zeros() as usize % POINTS);
-        while closed != 0 {
-            let i = closed.trailing_zeros() as usize;
-            closed &= closed - 1;
+        let one = open.trailing_zeros() as usize % POINTS;
+        for i in numbers(!open) {
             for values in self.origin.iter_mut().chain(&mut self.direction).chain(&mut self.inverse) {
                 values[i] = values[one];
             }
